@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "hal/camera.h"
+#include "rt/clock.h"
+#include "rt/result.h"
+
+namespace hal {
+
+/// One stored frame, borrowed for the duration of a render() call.
+struct SourceImage {
+  const std::byte* pixels = nullptr;  ///< rows of width_px bytes, no padding
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  PixelFormat format = PixelFormat::kBayerRG8;
+};
+
+/// Pinhole and Brown-Conrady distortion in OpenCV's convention (k1, k2, p1, p2, k3).
+struct Lens {
+  double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
+  std::array<double, 5> distortion{};
+  /// Undistorted radius (in units of the focal length) up to which the distortion
+  /// model is monotonic; beyond it there is border, never a folded picture.
+  double max_radius = 0;
+};
+
+/// Everything the renderer needs to draw one view: pure data, made by the warp planner.
+/// The renderer samples backwards: display pixel -> undistorted camera pixel by
+/// H_camera_display -> distorted source pixel by the lens. Pixel centres at integers.
+struct WarpPlan {
+  SourceImage source;
+  std::array<double, 9> H_camera_display{};  ///< row-major
+  Lens lens;
+  std::array<float, 3> gain_rgb{1, 1, 1};  ///< applied in linear light
+};
+
+/// The line of text over the picture. Trivially copyable; utf-8, zero-terminated.
+struct StatusLine {
+  std::array<char, 128> text{};
+  bool warning = false;  ///< drawn as a badge: the picture is not what was asked for
+  [[nodiscard]] std::string_view view() const { return text.data(); }
+};
+
+struct DisplayMode {
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  double refresh_hz = 0;
+};
+
+/// When one picture passed the stages of the renderer.
+struct RenderInstants {
+  rt::Timestamp warp_submit;  ///< drawing starts: demosaic and upload come next
+  rt::Timestamp upload_end;   ///< demosaiced and uploaded
+  rt::Timestamp warp_end;     ///< all pixels written
+};
+
+struct PageFlip {
+  std::uint64_t picture_id;
+  rt::Timestamp page_flip;  ///< the vblank at which the picture came on screen
+  std::uint64_t vblank;     ///< that vblank's number
+};
+
+/// A screen that shows one warped picture at a time.
+///
+/// Threads  One caller: the render thread. The object is made (EGL context included) on a
+///          SCHED_OTHER thread and handed over: the first call binds the context to its caller.
+/// RT       Nothing here is RT safe; GL and commits may block. The caller's budget is monitored.
+/// Errors   kBusy: the last commit has not flipped yet. kDeviceLost: no screen; goes on when it
+///          is back. Both leave the object usable.
+class Display {
+ public:
+  virtual ~Display() = default;
+
+  [[nodiscard]] virtual DisplayMode mode() const = 0;
+  /// What draws, for the report: GL_RENDERER.
+  [[nodiscard]] virtual std::string_view renderer() const = 0;
+
+  /// Draws into a free buffer, done when it returns. Without a plan the picture is empty.
+  [[nodiscard]] virtual rt::Result<RenderInstants> render(const WarpPlan* plan,
+                                                          const StatusLine& status) = 0;
+
+  /// Hands the buffer just drawn to the next vblank; the instant it did.
+  [[nodiscard]] virtual rt::Result<rt::Timestamp> commit(std::uint64_t picture_id) = 0;
+
+  /// Page flips since the last call, oldest first.
+  [[nodiscard]] virtual std::optional<PageFlip> tryPopFlip() = 0;
+};
+
+}  // namespace hal
