@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "hal/camera.h"
+#include "rt/clock.h"
+
+/// What a run leaves behind: the instants of every trigger, frame and picture, one record each.
+/// docs/trace.md describes the file; the field names there are these names plus `_ns` for instants.
+/// An instant of zero did not happen. Cameras count from 0, triggers and pictures from 1.
+namespace appliance {
+
+enum class PictureMode : std::uint8_t { kLive, kDelayed, kFrozen, kSweep };
+
+/// One pulse of the trigger line, by the trigger loop.
+struct TriggerRecord {
+  std::uint64_t trigger = 0;
+  rt::Timestamp deadline;             ///< when the pulse should have left
+  rt::Timestamp trigger_edge_before;  ///< it left between these two
+  rt::Timestamp trigger_edge_after;
+};
+
+/// One frame that a camera delivered, whole or not, by that camera's receive thread.
+struct FrameRecord {
+  std::uint32_t camera = 0;
+  hal::FrameStatus status = hal::FrameStatus::kAborted;
+  std::uint64_t trigger = 0;   ///< 0: no trigger edge was near enough
+  std::uint64_t frame_id = 0;  ///< the camera's own count, unwrapped
+  rt::Timestamp first_packet;
+  rt::Timestamp last_packet;
+  rt::Timestamp frame_ready;  ///< the frame stands in the history, readable
+};
+
+/// The last frame of a trigger arrived, by whichever thread completed the set.
+struct SetRecord {
+  std::uint64_t trigger = 0;
+  rt::Timestamp set_complete;
+};
+
+/// One picture that was handed to the display, by the render thread.
+struct PictureRecord {
+  std::uint64_t picture_id = 0;
+  PictureMode mode = PictureMode::kLive;
+  bool substitute = false;  ///< a neighbour of camera_wanted is shown instead
+  std::uint32_t camera_wanted = 0;
+  std::uint32_t camera_shown = 0;
+  std::uint64_t trigger = 0;  ///< 0: an empty picture
+  rt::Timestamp wake;         ///< the render thread began this picture
+  rt::Timestamp target_point_begin;
+  rt::Timestamp target_point_end;
+  rt::Timestamp homographies_begin;  ///< the homographies of all cameras
+  rt::Timestamp homographies_end;
+  rt::Timestamp warp_submit;
+  rt::Timestamp upload_end;
+  rt::Timestamp warp_end;
+  rt::Timestamp commit;
+  rt::Timestamp button_event;  ///< the press whose effect this picture is the first to show
+};
+
+/// A committed picture came on screen, by the render thread.
+struct FlipRecord {
+  std::uint64_t picture_id = 0;
+  rt::Timestamp page_flip;
+  std::uint64_t vblank = 0;
+};
+
+/// What crosses from a real-time thread to the trace writer.
+using TraceRecord = std::variant<TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord>;
+static_assert(std::is_trivially_copyable_v<TraceRecord>, "records cross threads by copy");
+
+/// What a named thread asked for and what the kernel granted.
+struct ThreadGrant {
+  std::string name;
+  std::string policy;  ///< "fifo", "rr" or "other": what it really runs with
+  int priority = 0;
+  int cpu = -1;  ///< -1: any
+  bool as_asked = true;
+};
+
+/// The first line: what ran, known before the first trigger.
+struct RunRecord {
+  std::uint32_t cameras = 0;
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  std::string pixel_format;
+  double trigger_hz = 0;
+  std::uint32_t display_width_px = 0;
+  std::uint32_t display_height_px = 0;
+  double refresh_hz = 0;
+  std::string renderer;
+  std::uint32_t history_sets = 0;
+  std::uint64_t memory_bytes = 0;  ///< the frame history, in-flight and reserve slots included
+  bool memory_locked = false;
+  std::vector<ThreadGrant> threads;
+  std::vector<std::string> degraded;  ///< one line per thing that is less than configured
+  rt::Timestamp start;
+};
+
+/// The last line: how it ended. A trace without one was cut off.
+struct SummaryRecord {
+  bool clean_stop = false;
+  rt::Timestamp stop;
+  double cpu_seconds = 0;          ///< user and system time of the daemon
+  std::uint64_t memory_bytes = 0;  ///< resident at the end
+  std::uint64_t frames_lost = 0;   ///< as the running daemon counted them
+  std::uint64_t frames_incomplete = 0;
+  std::uint64_t frames_unattributed = 0;
+  std::uint64_t pictures_skipped = 0;  ///< vblanks for which the render thread came too late
+  std::uint64_t trace_dropped = 0;     ///< records the trace itself lost; TraceWriter fills it in
+};
+
+}  // namespace appliance

@@ -1,0 +1,253 @@
+#include "appliance/trace/trace_file.h"
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <concepts>
+#include <cstring>
+#include <fstream>
+#include <type_traits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "appliance/trace/record_fields.h"
+
+namespace appliance {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<std::string_view, 4> kModeNames = {"live", "delayed", "frozen", "sweep"};
+constexpr std::array<std::string_view, 4> kStatusNames = {"complete", "incomplete", "wrong_size",
+                                                          "aborted"};
+
+template <class Record>
+constexpr const char* kKind = nullptr;
+template <>
+constexpr const char* kKind<TriggerRecord> = "trigger";
+template <>
+constexpr const char* kKind<FrameRecord> = "frame";
+template <>
+constexpr const char* kKind<SetRecord> = "set";
+template <>
+constexpr const char* kKind<PictureRecord> = "picture";
+template <>
+constexpr const char* kKind<FlipRecord> = "flip";
+
+/// Appends the fields of the frequent records; they hold no text of the world, so nothing is
+/// escaped.
+class LineAppender {
+ public:
+  explicit LineAppender(std::string& text) : text_(text) {}
+
+  void operator()(const char* name, rt::Timestamp instant) { number(name, rt::toNs(instant)); }
+  void operator()(const char* name, bool value) { key(name).append(value ? "true" : "false"); }
+  void operator()(const char* name, PictureMode mode) { word(name, nameOf(mode)); }
+  void operator()(const char* name, hal::FrameStatus status) { word(name, nameOf(status)); }
+  void operator()(const char* name, std::unsigned_integral auto value) { number(name, value); }
+
+ private:
+  std::string& key(const char* name) { return text_.append(",\"").append(name).append("\":"); }
+  void word(const char* name, std::string_view value) {
+    key(name).append("\"").append(value).append("\"");
+  }
+  void number(const char* name, std::integral auto value) {
+    std::array<char, 24> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    key(name).append(digits.data(), end);
+  }
+
+  std::string& text_;
+};
+
+json toJson(const ThreadGrant& grant);
+
+/// Fills a JSON object with the fields of the two records that carry text.
+struct JsonFiller {
+  json& object;
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    object[name] = value;
+  }
+  void operator()(const char* name, rt::Timestamp instant) { object[name] = rt::toNs(instant); }
+  void operator()(const char* name, const std::vector<ThreadGrant>& grants) {
+    json& list = object[name] = json::array();
+    for (const ThreadGrant& grant : grants) list.push_back(toJson(grant));
+  }
+};
+
+json toJson(const ThreadGrant& grant) {
+  json object;
+  visitFields(grant, JsonFiller{object});
+  return object;
+}
+
+/// Takes the fields of one record out of a parsed line; the first thing that is wrong stays.
+struct JsonReader {
+  const json& object;
+  std::string& error;
+
+  template <class T>
+  void operator()(const char* name, T& value) {
+    if (!error.empty()) return;
+    const auto found = object.find(name);
+    if (found == object.end())
+      error = std::string("no field '") + name + "'";
+    else if (!take(*found, value))
+      error = std::string("field '") + name + "' has the wrong type or value";
+  }
+
+ private:
+  static bool take(const json& from, bool& to) {
+    if (!from.is_boolean()) return false;
+    to = from.get<bool>();
+    return true;
+  }
+  static bool take(const json& from, std::string& to) {
+    if (!from.is_string()) return false;
+    to = from.get<std::string>();
+    return true;
+  }
+  static bool take(const json& from, double& to) {
+    if (!from.is_number()) return false;
+    to = from.get<double>();
+    return true;
+  }
+  template <std::integral T>
+  static bool take(const json& from, T& to) {
+    if (!from.is_number_integer()) return false;
+    if (from.is_number_unsigned()) {
+      const auto value = from.get<std::uint64_t>();
+      to = static_cast<T>(value);
+      return std::in_range<T>(value);
+    }
+    const auto value = from.get<std::int64_t>();
+    to = static_cast<T>(value);
+    return std::in_range<T>(value);
+  }
+  static bool take(const json& from, rt::Timestamp& to) {
+    std::int64_t t_ns = 0;
+    if (!take(from, t_ns) || t_ns < 0) return false;
+    to = rt::fromNs(t_ns);
+    return true;
+  }
+  static bool take(const json& from, PictureMode& to) { return takeName(from, kModeNames, to); }
+  static bool take(const json& from, hal::FrameStatus& to) {
+    return takeName(from, kStatusNames, to);
+  }
+  static bool take(const json& from, std::vector<std::string>& to) {
+    if (!from.is_array()) return false;
+    for (const json& item : from)
+      if (!take(item, to.emplace_back())) return false;
+    return true;
+  }
+  static bool take(const json& from, std::vector<ThreadGrant>& to) {
+    if (!from.is_array()) return false;
+    for (const json& item : from) {
+      std::string wrong;
+      if (!item.is_object()) return false;
+      visitFields(to.emplace_back(), JsonReader{item, wrong});
+      if (!wrong.empty()) return false;
+    }
+    return true;
+  }
+  template <class Enum, std::size_t N>
+  static bool takeName(const json& from, const std::array<std::string_view, N>& names, Enum& to) {
+    if (!from.is_string()) return false;
+    const auto& text = from.get_ref<const std::string&>();
+    for (std::size_t i = 0; i < N; ++i) {
+      if (text != names[i]) continue;
+      to = static_cast<Enum>(i);
+      return true;
+    }
+    return false;
+  }
+};
+
+template <class Record>
+std::string readInto(const json& object, Record& record) {
+  std::string error;
+  visitFields(record, JsonReader{object, error});
+  return error;
+}
+
+/// Adds one line to the trace; what is wrong with it, or nothing.
+std::string takeLine(const std::string& line, bool first, Trace& trace) {
+  const json object = json::parse(line, nullptr, false);
+  if (!object.is_object()) return "this is not a JSON object";
+  const std::string kind = object.contains("record") && object["record"].is_string()
+                               ? object["record"].get<std::string>()
+                               : "";
+  if (first != (kind == "run"))
+    return first ? "the first line of a trace is its run record" : "a second run record";
+  if (first) {
+    const auto format = object.find("format");
+    if (format == object.end() || *format != kTraceFormat)
+      return "not a trace of format " + std::to_string(kTraceFormat);
+    return readInto(object, trace.run);
+  }
+  if (trace.summary) return "a record after the summary";
+  if (kind == kKind<TriggerRecord>) return readInto(object, trace.triggers.emplace_back());
+  if (kind == kKind<FrameRecord>) return readInto(object, trace.frames.emplace_back());
+  if (kind == kKind<SetRecord>) return readInto(object, trace.sets.emplace_back());
+  if (kind == kKind<PictureRecord>) return readInto(object, trace.pictures.emplace_back());
+  if (kind == kKind<FlipRecord>) return readInto(object, trace.flips.emplace_back());
+  if (kind == "summary") return readInto(object, trace.summary.emplace());
+  return "unknown record '" + kind + "'";
+}
+
+}  // namespace
+
+std::string_view nameOf(PictureMode mode) {
+  return kModeNames[static_cast<std::size_t>(mode)];
+}
+
+std::string_view nameOf(hal::FrameStatus status) {
+  return kStatusNames[static_cast<std::size_t>(status)];
+}
+
+std::string toLine(const RunRecord& run) {
+  json object = {{"record", "run"}, {"format", kTraceFormat}};
+  visitFields(run, JsonFiller{object});
+  return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string toLine(const SummaryRecord& summary) {
+  json object = {{"record", "summary"}};
+  visitFields(summary, JsonFiller{object});
+  return object.dump() + "\n";
+}
+
+void appendLine(std::string& text, const TraceRecord& record) {
+  std::visit(
+      [&](const auto& one) {
+        text.append("{\"record\":\"").append(kKind<std::decay_t<decltype(one)>>).append("\"");
+        visitFields(one, LineAppender(text));
+        text.append("}\n");
+      },
+      record);
+}
+
+std::expected<Trace, std::string> readTrace(std::istream& in, const std::string& name) {
+  Trace trace;
+  std::string line;
+  std::size_t count = 0;
+  while (std::getline(in, line)) {
+    const bool cut_off = in.eof();
+    ++count;
+    if (cut_off && count > 1) break;
+    const std::string wrong = takeLine(line, count == 1, trace);
+    if (!wrong.empty()) return std::unexpected(name + ":" + std::to_string(count) + ": " + wrong);
+  }
+  if (count == 0) return std::unexpected(name + ": this trace is empty");
+  return trace;
+}
+
+std::expected<Trace, std::string> readTraceFile(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) return std::unexpected(path + ": cannot read the trace: " + std::strerror(errno));
+  return readTrace(in, path);
+}
+
+}  // namespace appliance

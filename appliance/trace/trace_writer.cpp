@@ -1,0 +1,83 @@
+#include "appliance/trace/trace_writer.h"
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include <pthread.h>
+
+#include "appliance/trace/trace_file.h"
+
+namespace appliance {
+namespace {
+
+constexpr std::chrono::milliseconds kDrainEvery{100};  // a twentieth of what a ring holds
+constexpr std::size_t kFileBufferBytes = 256 * 1024;
+
+std::string describe(const std::string& path, int error) {
+  return path + ": cannot write the trace: " + std::strerror(error);
+}
+
+}  // namespace
+
+std::expected<std::unique_ptr<TraceWriter>, std::string> TraceWriter::open(const std::string& path,
+                                                                           const RunRecord& run,
+                                                                           std::size_t producers) {
+  std::FILE* file = std::fopen(path.c_str(), "we");
+  if (file == nullptr) return std::unexpected(describe(path, errno));
+  std::unique_ptr<TraceWriter> writer(new TraceWriter(path, file, producers));
+  writer->write(toLine(run));
+  TraceWriter* self = writer.get();
+  writer->thread_ = std::jthread([self](const std::stop_token& stop) { self->run(stop); });
+  return writer;
+}
+
+TraceWriter::TraceWriter(std::string path, std::FILE* file, std::size_t producers)
+    : path_(std::move(path)), file_(file) {
+  (void)std::setvbuf(file, nullptr, _IOFBF, kFileBufferBytes);
+  for (std::size_t i = 0; i < producers; ++i)
+    producers_.push_back(std::make_unique<TraceProducer>());
+}
+
+std::uint64_t TraceWriter::dropped() const {
+  std::uint64_t sum = 0;
+  for (const auto& producer : producers_) sum += producer->dropped();
+  return sum;
+}
+
+std::expected<void, std::string> TraceWriter::finish(const SummaryRecord& summary) {
+  thread_ = std::jthread();  // asks it to stop and joins: from here the rings are ours
+  drain();
+  SummaryRecord complete = summary;
+  complete.trace_dropped = dropped();
+  write(toLine(complete));
+  if (write_errno_ == 0 && std::fflush(file_.get()) != 0) write_errno_ = errno;
+  file_.reset();
+  if (write_errno_ != 0) return std::unexpected(describe(path_, write_errno_));
+  return {};
+}
+
+void TraceWriter::run(const std::stop_token& stop) {
+  (void)pthread_setname_np(pthread_self(), "trace");
+  while (!stop.stop_requested()) {
+    drain();
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, stop, kDrainEvery, [] { return false; });
+  }
+}
+
+void TraceWriter::drain() {
+  std::string text;
+  for (const auto& producer : producers_)
+    while (const auto record = producer->ring_.tryPop()) appendLine(text, *record);
+  write(text);
+}
+
+void TraceWriter::write(const std::string& text) {
+  if (write_errno_ != 0 || text.empty()) return;
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size())
+    write_errno_ = errno != 0 ? errno : EIO;
+}
+
+}  // namespace appliance

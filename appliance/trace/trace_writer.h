@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <expected>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "appliance/trace/records.h"
+#include "rt/annotations.h"
+#include "rt/spsc_ring.h"
+
+namespace appliance {
+
+/// The end of the trace that one thread writes into. A full ring refuses the record and counts it.
+///
+/// Threads  record(): one thread. The writer's own thread takes the other end.
+/// RT       record() is wait-free.
+class TraceProducer {
+ public:
+  void record(const TraceRecord& record) RT_SAFE { (void)ring_.tryPush(record); }
+  [[nodiscard]] std::uint64_t dropped() const RT_SAFE { return ring_.dropped(); }
+
+ private:
+  friend class TraceWriter;
+  static constexpr std::uint32_t kRecords = 512;  // 12 s of one camera at 40 Hz
+  rt::SpscRing<TraceRecord, kRecords> ring_;
+};
+
+/// Writes the trace file: one thread, SCHED_OTHER, empties the producers' rings a few times a
+/// second. Producers never wait for it; what it is too slow for is dropped and counted.
+///
+/// Threads  open(), finish(): the owner. producer(i): set up by the owner, used by one thread each.
+/// Memory   All rings are made in open(); producers outlive their threads' last record().
+/// Errors   A file that cannot be made or written: one line for a person. Writing errors while
+///          running stop the writing, not the daemon, and are told by finish().
+class TraceWriter {
+ public:
+  [[nodiscard]] static std::expected<std::unique_ptr<TraceWriter>, std::string> open(
+      const std::string& path, const RunRecord& run, std::size_t producers);
+
+  ~TraceWriter() = default;  ///< without finish(): the records not yet written are gone
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  [[nodiscard]] TraceProducer& producer(std::size_t index) { return *producers_[index]; }
+
+  /// Records that found a full ring so far, all producers together.
+  [[nodiscard]] std::uint64_t dropped() const;
+
+  /// After the producers' last record(): writes what is left, then the summary, and closes.
+  [[nodiscard]] std::expected<void, std::string> finish(const SummaryRecord& summary);
+
+ private:
+  struct FileCloser {
+    void operator()(std::FILE* file) const { (void)std::fclose(file); }
+  };
+
+  TraceWriter(std::string path, std::FILE* file, std::size_t producers);
+  void run(const std::stop_token& stop);
+  void drain();
+  void write(const std::string& text);
+
+  std::string path_;
+  std::unique_ptr<std::FILE, FileCloser> file_;
+  int write_errno_ = 0;  // the first one
+  std::vector<std::unique_ptr<TraceProducer>> producers_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;
+};
+
+}  // namespace appliance
