@@ -1,0 +1,380 @@
+#include "appliance/config/toml_reader.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+#include <toml++/toml.h>
+
+namespace appliance {
+namespace {
+
+std::size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j + 1] + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// Shortest form that a person writes: 16384, 0.5, 1e+300.
+std::string written(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string kindOf(const toml::node& node) {
+  std::ostringstream out;
+  switch (node.type()) {
+    case toml::node_type::string:
+      out << "text";
+      break;
+    case toml::node_type::integer:
+      out << "the whole number " << **node.as_integer();
+      break;
+    case toml::node_type::floating_point:
+      out << "the number " << **node.as_floating_point();
+      break;
+    case toml::node_type::boolean:
+      out << (**node.as_boolean() ? "true" : "false");
+      break;
+    case toml::node_type::array:
+      out << "an array of " << node.as_array()->size();
+      break;
+    case toml::node_type::table:
+      out << "a table";
+      break;
+    default:
+      out << "a date or time";
+      break;
+  }
+  return out.str();
+}
+
+std::uint32_t lineOf(const toml::node& node, std::uint32_t otherwise) {
+  const std::uint32_t line = node.source().begin.line;
+  return line != 0 ? line : otherwise;
+}
+
+template <class Range, class Value>
+std::string outside(const Range& range, Value lowest, Value highest) {
+  using Limits = std::numeric_limits<Value>;
+  const std::string unit = *range.unit != '\0' ? std::string(" ") + range.unit : std::string();
+  const auto number = [](Value v) {
+    if constexpr (std::is_integral_v<Value>) {
+      return std::to_string(v);
+    } else {
+      return written(v);
+    }
+  };
+  if (highest == Limits::max()) return "at least " + number(lowest) + unit;
+  if (lowest == Limits::lowest()) return "at most " + number(highest) + unit;
+  return "from " + number(lowest) + " to " + number(highest) + unit;
+}
+
+}  // namespace
+
+std::optional<std::string_view> closestWord(std::string_view word,
+                                            std::span<const std::string_view> known) {
+  std::optional<std::string_view> best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = editDistance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+struct TomlFile::Content {
+  std::string name;
+  toml::table root;
+  std::optional<std::string> fault;
+
+  void note(std::uint32_t line, const std::string& label, const std::string& message) {
+    if (fault) return;  // the first one is the cause, later ones may follow from it
+    fault =
+        name + ":" + std::to_string(line) + ": " + (label.empty() ? "" : label + ": ") + message;
+  }
+};
+
+TomlFile::TomlFile(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+TomlFile::TomlFile(TomlFile&& other) noexcept = default;
+TomlFile& TomlFile::operator=(TomlFile&& other) noexcept = default;
+TomlFile::~TomlFile() = default;
+
+std::expected<TomlFile, std::string> TomlFile::load(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in)
+    return std::unexpected(path + ": cannot be opened (" + std::strerror(errno) +
+                           "); check the path and its permissions");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return std::unexpected(path + ": is a folder; name the file in it");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return parse(text.view(), path);
+}
+
+std::expected<TomlFile, std::string> TomlFile::parse(std::string_view text, std::string name) {
+  auto content = std::make_unique<Content>();
+  content->name = std::move(name);
+  try {
+    content->root = toml::parse(text, content->name);
+  } catch (const toml::parse_error& error) {
+    return std::unexpected(content->name + ":" + std::to_string(error.source().begin.line) +
+                           ": not valid TOML: " + std::string(error.description()) +
+                           "; correct this line");
+  }
+  return TomlFile(std::move(content));
+}
+
+TomlTable TomlFile::root() const {
+  return {content_.get(), &content_->root, 1, ""};
+}
+
+const std::optional<std::string>& TomlFile::fault() const {
+  return content_->fault;
+}
+
+/// The typed side of a table: kept here so that the header names no toml++ type.
+struct TomlTable::Access {
+  static const toml::node* find(const TomlTable& t, std::string_view key) {
+    return t.node_ != nullptr ? static_cast<const toml::table*>(t.node_)->get(key) : nullptr;
+  }
+
+  static const toml::node* demand(const TomlTable& t, std::string_view key) {
+    const toml::node* node = find(t, key);
+    if (node == nullptr)
+      t.content_->note(t.line_, t.label_,
+                       "the key \"" + std::string(key) + "\" is missing; add it");
+    return node;
+  }
+
+  static void note(const TomlTable& t, const toml::node& node, const std::string& message) {
+    t.content_->note(lineOf(node, t.line_), t.label_, message);
+  }
+
+  static void noteKind(const TomlTable& t, const toml::node& node, std::string_view key,
+                       const std::string& expected) {
+    note(t, node, std::string(key) + " must be " + expected + ", not " + kindOf(node));
+  }
+
+  static std::string readText(const TomlTable& t, const toml::node& node, std::string_view key) {
+    if (const auto* text = node.as_string()) return text->get();
+    noteKind(t, node, key, "text in quotes");
+    return {};
+  }
+
+  static std::optional<double> readNumber(const TomlTable& t, const toml::node& node,
+                                          const std::string& what, const NumberRange& range) {
+    double value = 0;
+    if (const auto* real = node.as_floating_point()) {
+      value = real->get();
+    } else if (const auto* whole = node.as_integer()) {
+      value = static_cast<double>(whole->get());
+    } else {
+      noteKind(t, node, what,
+               "a number" + (*range.unit != '\0' ? " in " + std::string(range.unit) : ""));
+      return std::nullopt;
+    }
+    if (!std::isfinite(value)) {
+      note(t, node, what + " must be a finite number, not " + written(value));
+      return std::nullopt;
+    }
+    if (value < range.lowest || value > range.highest) {
+      note(t, node,
+           what + " must be " + outside(range, range.lowest, range.highest) + ", not " +
+               written(value));
+      return std::nullopt;
+    }
+    return value;
+  }
+
+  static std::optional<std::int64_t> readInteger(const TomlTable& t, const toml::node& node,
+                                                 std::string_view key, const IntegerRange& range) {
+    const auto* whole = node.as_integer();
+    if (whole == nullptr) {
+      noteKind(t, node, key,
+               "a whole number" + (*range.unit != '\0' ? " in " + std::string(range.unit) : ""));
+      return std::nullopt;
+    }
+    const std::int64_t value = whole->get();
+    if (value < range.lowest || value > range.highest) {
+      note(t, node,
+           std::string(key) + " must be " + outside(range, range.lowest, range.highest) + ", not " +
+               std::to_string(value));
+      return std::nullopt;
+    }
+    return value;
+  }
+
+  /// Appends @p count numbers of @p node to @p out; false after a fault.
+  static bool readNumbers(const TomlTable& t, const toml::node& node, const std::string& what,
+                          std::size_t count, const NumberRange& range, std::vector<double>& out) {
+    const auto* array = node.as_array();
+    if (array == nullptr || array->size() != count) {
+      noteKind(t, node, what, "an array of " + std::to_string(count) + " numbers");
+      return false;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto value = readNumber(t, *array->get(i), what + "[" + std::to_string(i) + "]", range);
+      if (!value) return false;
+      out.push_back(*value);
+    }
+    return true;
+  }
+
+  static TomlTable child(const TomlTable& t, std::string_view key, const toml::table* table) {
+    const std::string path = "[" + std::string(key) + "]";
+    return {t.content_, table, table != nullptr ? lineOf(*table, t.line_) : t.line_,
+            t.label_.empty() ? path : t.label_ + " " + path};
+  }
+};
+
+TomlTable::TomlTable(TomlFile::Content* content, const void* node, std::uint32_t line,
+                     std::string label)
+    : content_(content), node_(node), line_(line), label_(std::move(label)) {}
+
+void TomlTable::allowKeys(std::span<const std::string_view> keys) const {
+  if (node_ == nullptr) return;
+  for (const auto& [key, node] : *static_cast<const toml::table*>(node_)) {
+    if (std::ranges::find(keys, key.str()) != keys.end()) continue;
+    const auto line = key.source().begin.line;
+    std::string message = "unknown key \"" + std::string(key.str()) + "\"; ";
+    if (const auto suggestion = closestWord(key.str(), keys)) {
+      message += "did you mean \"" + std::string(*suggestion) + "\"?";
+    } else {
+      message += "remove it, or see the manual for the keys that exist";
+    }
+    content_->note(line != 0 ? line : line_, label_, message);
+  }
+}
+
+bool TomlTable::has(std::string_view key) const {
+  return Access::find(*this, key) != nullptr;
+}
+
+std::string TomlTable::text(std::string_view key) const {
+  const toml::node* node = Access::demand(*this, key);
+  return node != nullptr ? Access::readText(*this, *node, key) : std::string();
+}
+
+std::string TomlTable::textOr(std::string_view key, std::string_view fallback) const {
+  return has(key) ? text(key) : std::string(fallback);
+}
+
+bool TomlTable::flagOr(std::string_view key, bool fallback) const {
+  const toml::node* node = Access::find(*this, key);
+  if (node == nullptr) return fallback;
+  if (const auto* flag = node->as_boolean()) return flag->get();
+  Access::noteKind(*this, *node, key, "true or false");
+  return fallback;
+}
+
+double TomlTable::number(std::string_view key, const NumberRange& range) const {
+  const toml::node* node = Access::demand(*this, key);
+  return node != nullptr ? Access::readNumber(*this, *node, std::string(key), range).value_or(0)
+                         : 0;
+}
+
+double TomlTable::numberOr(std::string_view key, double fallback, const NumberRange& range) const {
+  return has(key) ? number(key, range) : fallback;
+}
+
+std::int64_t TomlTable::integer(std::string_view key, const IntegerRange& range) const {
+  const toml::node* node = Access::demand(*this, key);
+  return node != nullptr ? Access::readInteger(*this, *node, key, range).value_or(0) : 0;
+}
+
+std::int64_t TomlTable::integerOr(std::string_view key, std::int64_t fallback,
+                                  const IntegerRange& range) const {
+  return has(key) ? integer(key, range) : fallback;
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count,
+                                       const NumberRange& range) const {
+  std::vector<double> out;
+  const toml::node* node = Access::demand(*this, key);
+  if (node == nullptr || !Access::readNumbers(*this, *node, std::string(key), count, range, out))
+    out.assign(count, 0);
+  return out;
+}
+
+std::vector<double> TomlTable::matrix(std::string_view key, std::size_t rows,
+                                      std::size_t columns) const {
+  std::vector<double> zeros(rows * columns, 0);
+  const toml::node* node = Access::demand(*this, key);
+  if (node == nullptr) return zeros;
+  const auto* array = node->as_array();
+  if (array == nullptr || array->size() != rows) {
+    Access::noteKind(
+        *this, *node, key,
+        "an array of " + std::to_string(rows) + " rows of " + std::to_string(columns) + " numbers");
+    return zeros;
+  }
+  std::vector<double> out;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::string what = std::string(key) + "[" + std::to_string(row) + "]";
+    if (!Access::readNumbers(*this, *array->get(row), what, columns, {}, out)) return zeros;
+  }
+  return out;
+}
+
+std::vector<std::string> TomlTable::textsOr(std::string_view key,
+                                            std::vector<std::string> fallback) const {
+  const toml::node* node = Access::find(*this, key);
+  if (node == nullptr) return fallback;
+  const auto* array = node->as_array();
+  if (array == nullptr) {
+    Access::noteKind(*this, *node, key, "an array of texts");
+    return fallback;
+  }
+  std::vector<std::string> out;
+  for (const toml::node& element : *array) out.push_back(Access::readText(*this, element, key));
+  return out;
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+  const toml::node* node = Access::find(*this, key);
+  if (node == nullptr) return Access::child(*this, key, nullptr);
+  if (!node->is_table()) Access::noteKind(*this, *node, key, "a table, [" + std::string(key) + "]");
+  return Access::child(*this, key, node->as_table());
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+  std::vector<TomlTable> out;
+  const toml::node* node = Access::find(*this, key);
+  if (node == nullptr) return out;
+  const auto* array = node->as_array();
+  if (array == nullptr || !array->is_homogeneous(toml::node_type::table)) {
+    Access::noteKind(*this, *node, key, "a list of tables, [[" + std::string(key) + "]]");
+    return out;
+  }
+  for (const toml::node& element : *array) {
+    out.push_back(Access::child(*this, key, element.as_table()));
+  }
+  return out;
+}
+
+void TomlTable::fail(std::string_view key, const std::string& message) const {
+  const toml::node* node = Access::find(*this, key);
+  content_->note(node != nullptr ? lineOf(*node, line_) : line_, label_, message);
+}
+
+}  // namespace appliance
