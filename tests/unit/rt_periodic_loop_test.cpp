@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include "rt/periodic_loop.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using rt::fromNs;
+using rt::PeriodicSchedule;
+
+constexpr auto kFirst = fromNs(1'000'000'000);
+constexpr rt::Nanoseconds kPeriod = 25ms;
+
+TEST(PeriodicSchedule, RunsOneTurnPerDeadlineOnAGridThatDoesNotDrift) {
+  PeriodicSchedule schedule(kFirst, kPeriod);
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    ASSERT_EQ(schedule.deadline(), kFirst + i * kPeriod);
+    const auto tick = schedule.wake(schedule.deadline() + 80us);
+    ASSERT_TRUE(tick.has_value());
+    EXPECT_EQ(tick->index, i);
+    EXPECT_EQ(tick->deadline, kFirst + i * kPeriod);
+    EXPECT_EQ(tick->lateness, 80us);
+    EXPECT_EQ(tick->missed, 0u);
+  }
+}
+
+TEST(PeriodicSchedule, GoesBackToSleepWhenWokenEarly) {
+  PeriodicSchedule schedule(kFirst, kPeriod);
+  EXPECT_FALSE(schedule.wake(kFirst - 1ns).has_value());
+  EXPECT_EQ(schedule.deadline(), kFirst);
+  EXPECT_EQ(schedule.missed(), 0u);
+}
+
+TEST(PeriodicSchedule, SkipsAndCountsMissedDeadlinesInsteadOfBursting) {
+  PeriodicSchedule schedule(kFirst, kPeriod);
+  const auto late = schedule.wake(kFirst + 3 * kPeriod + 1ms);
+  ASSERT_TRUE(late.has_value());
+  EXPECT_EQ(late->index, 3u);
+  EXPECT_EQ(late->deadline, kFirst + 3 * kPeriod);
+  EXPECT_EQ(late->lateness, 1ms);
+  EXPECT_EQ(late->missed, 3u);
+  EXPECT_FALSE(schedule.wake(kFirst + 3 * kPeriod + 2ms).has_value());  // no second turn
+
+  const auto next = schedule.wake(kFirst + 4 * kPeriod);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_EQ(next->index, 4u);
+  EXPECT_EQ(next->missed, 0u);
+  EXPECT_EQ(schedule.missed(), 3u);
+}
+
+TEST(PeriodicSchedule, GivesUpADeadlineBeyondItsLatestLateness) {
+  PeriodicSchedule schedule(kFirst, kPeriod, 2ms);
+  EXPECT_FALSE(schedule.wake(kFirst + 2ms + 1ns).has_value());
+  EXPECT_EQ(schedule.deadline(), kFirst + kPeriod);
+  EXPECT_EQ(schedule.missed(), 1u);
+
+  const auto next = schedule.wake(kFirst + kPeriod + 2ms);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_EQ(next->missed, 1u);  // the turn knows what was lost before it
+}
+
+TEST(PeriodicSchedule, NudgeMovesAllComingDeadlines) {
+  PeriodicSchedule schedule(kFirst, kPeriod);
+  schedule.nudge(-300us);
+  EXPECT_EQ(schedule.deadline(), kFirst - 300us);
+  ASSERT_TRUE(schedule.wake(schedule.deadline()).has_value());
+  EXPECT_EQ(schedule.deadline(), kFirst - 300us + kPeriod);
+}
+
+TEST(PeriodicSchedule, SetPhaseTakesTheShorterWay) {
+  for (const rt::Nanoseconds shift : {0ns, 10ms, -10ms, 12ms, -12ms}) {
+    for (const int periods : {-7, 0, 7}) {
+      PeriodicSchedule schedule(kFirst, kPeriod);
+      schedule.setPhase(kFirst + shift + periods * kPeriod);
+      EXPECT_EQ(schedule.deadline(), kFirst + shift);
+    }
+  }
+}
+
+TEST(PeriodicLoop, WakesAtItsDeadlinesAndNeverBefore) {
+  const auto begin = rt::now();
+  rt::PeriodicLoop loop(PeriodicSchedule(begin + 1ms, 2ms));
+  std::uint64_t served = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t last_index = 0;
+  while (served < 10) {
+    const auto tick = loop.wait();
+    if (!tick) continue;
+    EXPECT_GE(rt::now(), tick->deadline);
+    EXPECT_EQ(tick->deadline, begin + 1ms + tick->index * rt::Nanoseconds(2ms));
+    ++served;
+    lost += tick->missed;
+    last_index = tick->index;
+  }
+  EXPECT_EQ(served + lost, last_index + 1);  // every deadline was served or counted
+}
+
+TEST(SleepUntil, ReturnsAtOnceForAnInstantThatHasPassed) {
+  rt::sleepUntil(rt::now() - 1h);
+  rt::sleepUntil(fromNs(-5));
+  SUCCEED();  // hanging is the failure; ctest's timeout tells
+}
+
+}  // namespace
