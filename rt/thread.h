@@ -26,8 +26,8 @@ enum class SchedPolicy : std::uint8_t {
 struct ThreadConfig {
   std::string name;  ///< 1 to 15 characters, as `ps -L` shows it
   SchedPolicy policy = SchedPolicy::kOther;
-  int priority = 0;       ///< 1 to 99 for kFifo and kRoundRobin, 0 for kOther
-  std::vector<int> cpus;  ///< CPUs it may run on; empty: all that the process may use
+  int priority = 0;            ///< 1 to 99 for kFifo and kRoundRobin, 0 for kOther
+  std::vector<int> cpus = {};  ///< CPUs it may run on; empty: all that the process may use
   std::size_t prefault_stack_bytes = 64 * 1024;  ///< touched before the body runs
 };
 

@@ -68,7 +68,7 @@ TEST(PeriodicSchedule, NudgeMovesAllComingDeadlines) {
 }
 
 TEST(PeriodicSchedule, SetPhaseTakesTheShorterWay) {
-  for (const rt::Nanoseconds shift : {0ns, 10ms, -10ms, 12ms, -12ms}) {
+  for (const auto shift : {0ms, 10ms, -10ms, 12ms, -12ms}) {
     for (const int periods : {-7, 0, 7}) {
       PeriodicSchedule schedule(kFirst, kPeriod);
       schedule.setPhase(kFirst + shift + periods * kPeriod);
