@@ -207,7 +207,8 @@ struct TomlTable::Access {
   }
 
   static std::optional<std::int64_t> readInteger(const TomlTable& t, const toml::node& node,
-                                                 std::string_view key, const IntegerRange& range) {
+                                                 const std::string& key,
+                                                 const IntegerRange& range) {
     const auto* whole = node.as_integer();
     if (whole == nullptr) {
       noteKind(t, node, key,
@@ -217,11 +218,32 @@ struct TomlTable::Access {
     const std::int64_t value = whole->get();
     if (value < range.lowest || value > range.highest) {
       note(t, node,
-           std::string(key) + " must be " + outside(range, range.lowest, range.highest) + ", not " +
+           key + " must be " + outside(range, range.lowest, range.highest) + ", not " +
                std::to_string(value));
       return std::nullopt;
     }
     return value;
+  }
+
+  /// The elements of @p node, each read by @p read_one; @p fallback after a fault.
+  template <class T, class Range>
+  static std::vector<T> readList(const TomlTable& t, const toml::node& node, std::string_view key,
+                                 std::vector<T> fallback, const Range& range,
+                                 std::optional<T> (*read_one)(const TomlTable&, const toml::node&,
+                                                              const std::string&, const Range&)) {
+    const auto* array = node.as_array();
+    if (array == nullptr) {
+      noteKind(t, node, key, "an array of numbers");
+      return fallback;
+    }
+    std::vector<T> out;
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const std::string what = std::string(key) + "[" + std::to_string(i) + "]";
+      const auto value = read_one(t, *array->get(i), what, range);
+      if (!value) return fallback;
+      out.push_back(*value);
+    }
+    return out;
   }
 
   /// Appends @p count numbers of @p node to @p out; false after a fault.
@@ -299,7 +321,8 @@ double TomlTable::numberOr(std::string_view key, double fallback, const NumberRa
 
 std::int64_t TomlTable::integer(std::string_view key, const IntegerRange& range) const {
   const toml::node* node = Access::demand(*this, key);
-  return node != nullptr ? Access::readInteger(*this, *node, key, range).value_or(0) : 0;
+  return node != nullptr ? Access::readInteger(*this, *node, std::string(key), range).value_or(0)
+                         : 0;
 }
 
 std::int64_t TomlTable::integerOr(std::string_view key, std::int64_t fallback,
@@ -314,6 +337,21 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count,
   if (node == nullptr || !Access::readNumbers(*this, *node, std::string(key), count, range, out))
     out.assign(count, 0);
   return out;
+}
+
+std::vector<double> TomlTable::numberListOr(std::string_view key, std::vector<double> fallback,
+                                            const NumberRange& range) const {
+  const toml::node* node = Access::find(*this, key);
+  if (node == nullptr) return fallback;
+  return Access::readList(*this, *node, key, std::move(fallback), range, &Access::readNumber);
+}
+
+std::vector<std::int64_t> TomlTable::integerListOr(std::string_view key,
+                                                   std::vector<std::int64_t> fallback,
+                                                   const IntegerRange& range) const {
+  const toml::node* node = Access::find(*this, key);
+  if (node == nullptr) return fallback;
+  return Access::readList(*this, *node, key, std::move(fallback), range, &Access::readInteger);
 }
 
 std::vector<double> TomlTable::matrix(std::string_view key, std::size_t rows,

@@ -108,6 +108,12 @@ class TomlTable {
     for (std::size_t i = 0; i < N; ++i) out[i] = read[i];
     return out;
   }
+  /// Arrays of any length.
+  [[nodiscard]] std::vector<double> numberListOr(std::string_view key, std::vector<double> fallback,
+                                                 const NumberRange& range = {}) const;
+  [[nodiscard]] std::vector<std::int64_t> integerListOr(std::string_view key,
+                                                        std::vector<std::int64_t> fallback,
+                                                        const IntegerRange& range = {}) const;
   /// @p rows arrays of @p columns finite numbers, row-major; zeros after a fault.
   [[nodiscard]] std::vector<double> matrix(std::string_view key, std::size_t rows,
                                            std::size_t columns) const;

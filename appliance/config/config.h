@@ -1,0 +1,145 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <expected>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hal/camera.h"
+#include "rt/thread.h"
+
+namespace appliance {
+
+/// Everything a site sets. The defaults here are the values in the installed
+/// appliance/config/kagamid.toml, which documents every key; a test holds the two equal.
+struct Config {
+  struct Rig {
+    std::string file = "/etc/kagami/rig.toml";
+    bool operator==(const Rig&) const = default;
+  };
+
+  struct Cameras {
+    std::string backend = "aravis";
+    std::vector<std::string> addresses;  ///< IPv4, in the order of the rig file
+    std::string trigger_source = "Line1";
+    hal::PixelFormat pixel_format = hal::PixelFormat::kBayerRG8;
+    double exposure_us = 1000;
+    double gain_db = 0;
+    std::array<double, 3> white_balance_rgb{1, 1, 1};
+    std::uint32_t packet_size_bytes = 9000;
+    std::uint32_t packet_delay_ns = 0;
+    std::uint32_t socket_buffer_bytes = 4U << 20;
+    std::uint32_t packet_timeout_us = 5000;
+    std::uint32_t frame_retention_us = 30000;
+    double start_timeout_s = 10;
+    bool operator==(const Cameras&) const = default;
+  };
+
+  struct Trigger {
+    std::string backend = "emulated";
+    double rate_hz = 40;
+    double pulse_width_us = 100;
+    std::string wire_address = "127.0.0.1:3990";
+    bool operator==(const Trigger&) const = default;
+  };
+
+  struct History {
+    std::uint32_t sets = 300;
+    std::uint32_t in_flight = 8;  ///< slots per camera
+    std::uint32_t reserve = 4;    ///< slots per camera for what readers pin
+    bool size_down = true;
+    bool operator==(const History&) const = default;
+  };
+
+  struct Display {
+    std::string backend = "offscreen";
+    std::uint32_t width_px = 1280;
+    std::uint32_t height_px = 720;
+    double refresh_hz = 80;
+    double zoom = 1;
+    std::uint32_t render_threads = 2;
+    std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    bool operator==(const Display&) const = default;
+  };
+
+  struct Panel {
+    std::string backend = "none";
+    std::string script;
+    bool operator==(const Panel&) const = default;
+  };
+
+  struct Director {
+    std::vector<double> delay_ladder_s{0.5, 1, 2, 3, 4, 5, 6, 7};
+    double sweep_views_per_s = 10;
+    bool operator==(const Director&) const = default;
+  };
+
+  struct Record {
+    std::string directory;  ///< empty: nothing is recorded
+    double video_hz = 20;
+    std::uint32_t video_width_px = 640;
+    bool operator==(const Record&) const = default;
+  };
+
+  /// How one thread, or all receive threads, shall run; rt::ThreadConfig less its name.
+  struct ThreadSchedule {
+    rt::SchedPolicy policy = rt::SchedPolicy::kOther;
+    int priority = 0;
+    std::vector<int> cpus;  ///< empty: any
+    bool operator==(const ThreadSchedule&) const = default;
+  };
+
+  struct Realtime {
+    bool lock_memory = true;
+    bool require = false;  ///< refuse to start without the permissions, instead of degrading
+    ThreadSchedule trigger{rt::SchedPolicy::kFifo, 80, {}};
+    ThreadSchedule receive{rt::SchedPolicy::kFifo, 70, {}};
+    ThreadSchedule render{rt::SchedPolicy::kFifo, 60, {}};
+    ThreadSchedule panel{};
+    bool operator==(const Realtime&) const = default;
+  };
+
+  struct State {
+    std::string directory = "/var/lib/kagami";
+    std::string trace;  ///< empty: no trace is written
+    bool operator==(const State&) const = default;
+  };
+
+  struct Control {
+    std::string bus = "system";  ///< system, session, none or a D-Bus address
+    std::string name = "org.kagami.Kagami1";
+    bool operator==(const Control&) const = default;
+  };
+
+  Rig rig;
+  Cameras cameras;
+  Trigger trigger;
+  History history;
+  Display display;
+  Panel panel;
+  Director director;
+  Record record;
+  Realtime realtime;
+  State state;
+  Control control;
+  bool operator==(const Config&) const = default;
+};
+
+/// The defaults, then the file's keys, then @p overrides: "section.key=value" with the value as
+/// in TOML; a value that is not TOML is taken as text, so that a shell needs no second quotes.
+///
+/// Errors   One line for a person: file and line (or the override), what, what to do. A key that
+///          does not exist is refused, with the nearest one that does.
+[[nodiscard]] std::expected<Config, std::string> loadConfig(
+    const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// The same of text already read; @p name stands for the file in messages.
+[[nodiscard]] std::expected<Config, std::string> parseConfig(
+    std::string_view text, const std::string& name, const std::vector<std::string>& overrides = {});
+
+/// Every key there is, as "section.key".
+[[nodiscard]] std::vector<std::string> configKeys();
+
+}  // namespace appliance

@@ -1,0 +1,186 @@
+#include "appliance/config/config.h"
+
+#include <fstream>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using appliance::Config;
+using appliance::loadConfig;
+using appliance::parseConfig;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kInstalledFile =
+    std::string(KAGAMI_SOURCE_DIR) + "/appliance/config/kagamid.toml";
+
+std::string faultOf(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  const auto config = parseConfig(text, "kagamid.toml", overrides);
+  return config ? "no fault" : config.error();
+}
+
+/// The keys that stand in the installed file, read from its text alone.
+std::set<std::string> keysInFile() {
+  std::ifstream in(kInstalledFile);
+  std::set<std::string> keys;
+  std::string section;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    if (line[0] == '[')
+      section = line.substr(1, line.find(']') - 1);
+    else
+      keys.insert(section + "." + line.substr(0, line.find(' ')));
+  }
+  return keys;
+}
+
+TEST(Config, TheInstalledFileHoldsTheDefaultsOfTheStruct) {
+  const auto config = loadConfig(kInstalledFile);
+  ASSERT_TRUE(config.has_value()) << config.error();
+  EXPECT_TRUE(*config == Config{});
+}
+
+TEST(Config, TheInstalledFileShowsEveryKey) {
+  const auto keys = appliance::configKeys();
+  EXPECT_EQ(keysInFile(), std::set<std::string>(keys.begin(), keys.end()));
+  EXPECT_GE(keys.size(), 50u);
+}
+
+TEST(Config, EveryKeyIsReadIntoTheStruct) {
+  // Each key in turn with another value must make another configuration.
+  const std::vector<std::string> other = {"rig.file=/x",
+                                          "cameras.backend=x",
+                                          "cameras.addresses=[\"10.0.0.1\"]",
+                                          "cameras.trigger_source=Line2",
+                                          "cameras.pixel_format=Mono8",
+                                          "cameras.exposure_us=900",
+                                          "cameras.gain_db=1",
+                                          "cameras.white_balance_rgb=[1,1,2]",
+                                          "cameras.packet_size_bytes=1500",
+                                          "cameras.packet_delay_ns=1",
+                                          "cameras.socket_buffer_bytes=1000000",
+                                          "cameras.packet_timeout_us=4000",
+                                          "cameras.frame_retention_us=20000",
+                                          "cameras.start_timeout_s=5",
+                                          "trigger.backend=x",
+                                          "trigger.rate_hz=30",
+                                          "trigger.pulse_width_us=50",
+                                          "trigger.wire_address=127.0.0.1:4000",
+                                          "history.sets=200",
+                                          "history.in_flight=10",
+                                          "history.reserve=5",
+                                          "history.size_down=false",
+                                          "display.backend=x",
+                                          "display.width_px=1920",
+                                          "display.height_px=1080",
+                                          "display.refresh_hz=60",
+                                          "display.zoom=2",
+                                          "display.render_threads=1",
+                                          "display.font=/x",
+                                          "panel.backend=terminal",
+                                          "panel.script=/x",
+                                          "director.delay_ladder_s=[1,2]",
+                                          "director.sweep_views_per_s=5",
+                                          "record.directory=/x",
+                                          "record.video_hz=10",
+                                          "record.video_width_px=320",
+                                          "realtime.lock_memory=false",
+                                          "realtime.require=true",
+                                          "realtime.trigger.policy=rr",
+                                          "realtime.trigger.priority=81",
+                                          "realtime.trigger.cpus=[1]",
+                                          "realtime.receive.policy=rr",
+                                          "realtime.receive.priority=71",
+                                          "realtime.receive.cpus=[1]",
+                                          "realtime.render.policy=rr",
+                                          "realtime.render.priority=61",
+                                          "realtime.render.cpus=[1]",
+                                          "realtime.panel.cpus=[1]",
+                                          "state.directory=/x",
+                                          "state.trace=/x",
+                                          "control.bus=none",
+                                          "control.name=x.y"};
+  std::set<std::string> tried = {"realtime.panel.policy", "realtime.panel.priority"};
+  for (const std::string& text : other) {
+    const auto config = parseConfig("", "kagamid.toml", {text});
+    ASSERT_TRUE(config.has_value()) << config.error();
+    EXPECT_FALSE(*config == Config{}) << text;
+    tried.insert(text.substr(0, text.find('=')));
+  }
+  // These two only go together, so they are the file's business.
+  const auto panel = parseConfig("[realtime.panel]\npolicy = \"fifo\"\npriority = 5", "f");
+  ASSERT_TRUE(panel.has_value()) << panel.error();
+  EXPECT_EQ(panel->realtime.panel.policy, rt::SchedPolicy::kFifo);
+  EXPECT_EQ(panel->realtime.panel.priority, 5);
+  const auto keys = appliance::configKeys();
+  EXPECT_EQ(tried, std::set<std::string>(keys.begin(), keys.end()));
+}
+
+TEST(Config, RefusesAnUnknownKeyWithLineAndSuggestion) {
+  EXPECT_THAT(
+      faultOf("[trigger]\nrate_hz = 40\n\n[display]\nwidht_px = 800\n"),
+      AllOf(StartsWith("kagamid.toml:5: "), HasSubstr("widht_px"), HasSubstr("\"width_px\"?")));
+  EXPECT_THAT(faultOf("[triger]\nrate_hz = 40\n"),
+              AllOf(StartsWith("kagamid.toml:1: "), HasSubstr("\"trigger\"?")));
+}
+
+TEST(Config, RefusesWrongTypesAndRangesInOneLine) {
+  EXPECT_THAT(faultOf("[trigger]\nrate_hz = \"fast\""),
+              AllOf(StartsWith("kagamid.toml:2: "), HasSubstr("rate_hz must be a number")));
+  EXPECT_THAT(faultOf("[trigger]\nrate_hz = 0"), HasSubstr("rate_hz must be from 0.1 to 1000 Hz"));
+  EXPECT_THAT(faultOf("[cameras]\npixel_format = \"RGB\""),
+              HasSubstr("pixel_format must be one of BayerRG8, "));
+  EXPECT_THAT(faultOf("[cameras]\naddresses = [\"cam1\"]"), HasSubstr("not an IPv4 address"));
+  EXPECT_THAT(faultOf("[cameras]\naddresses = [\"10.0.0.1\", \"10.0.0.1\"]"),
+              HasSubstr("stands twice"));
+  EXPECT_THAT(faultOf("[trigger]\nwire_address = \"127.0.0.1:0\""), HasSubstr("wire_address"));
+  EXPECT_THAT(faultOf("[director]\ndelay_ladder_s = [2, 1]"), HasSubstr("rising"));
+  EXPECT_THAT(faultOf("[director]\ndelay_ladder_s = []"), HasSubstr("one or more"));
+  EXPECT_THAT(faultOf("[realtime.render]\npriority = 0"), HasSubstr("priority must be 1 to 99"));
+  EXPECT_THAT(faultOf("[rig]\nfile = \"\""), HasSubstr("must not be empty"));
+  EXPECT_EQ(faultOf("[rig]\nfile = \"\"").find('\n'), std::string::npos);
+}
+
+TEST(Config, RefusesKeysThatContradictEachOther) {
+  EXPECT_THAT(faultOf("[cameras]\nexposure_us = 25000"), HasSubstr("shorter than the trigger's"));
+  EXPECT_THAT(faultOf("[trigger]\npulse_width_us = 25000"), HasSubstr("shorter than"));
+  EXPECT_THAT(faultOf("[history]\nin_flight = 3"), HasSubstr("in_flight must be at least 4"));
+  EXPECT_THAT(faultOf("", {"trigger.rate_hz=1000", "cameras.exposure_us=500"}),
+              HasSubstr("in_flight must be at least 32"));
+}
+
+TEST(Config, OverridesTakeTomlValuesAndBareText) {
+  const auto config = parseConfig("[trigger]\nrate_hz = 30", "f",
+                                  {"trigger.rate_hz=50", "rig.file=/tmp/a \"b\".toml",
+                                   "cameras.addresses=[\"127.0.0.1\", \"127.0.0.2\"]",
+                                   "realtime.render.priority=55", "control.bus=none"});
+  ASSERT_TRUE(config.has_value()) << config.error();
+  EXPECT_EQ(config->trigger.rate_hz, 50);
+  EXPECT_EQ(config->rig.file, "/tmp/a \"b\".toml");
+  EXPECT_EQ(config->cameras.addresses.size(), 2u);
+  EXPECT_EQ(config->realtime.render.priority, 55);
+  EXPECT_EQ(config->control.bus, "none");
+}
+
+TEST(Config, NamesTheOverrideThatIsWrong) {
+  EXPECT_THAT(faultOf("", {"trigger.rate=50"}),
+              AllOf(StartsWith("--set trigger.rate=50: "), HasSubstr("unknown key")));
+  EXPECT_THAT(faultOf("", {"rate_hz=50"}), HasSubstr("not of the form section.key=value"));
+  EXPECT_THAT(faultOf("", {"trigger.rate_hz"}), HasSubstr("not of the form section.key=value"));
+  EXPECT_THAT(faultOf("", {"trigger.rate_hz=nan"}), HasSubstr("finite"));
+  EXPECT_THAT(faultOf("", {"trigger..rate_hz=4"}), StartsWith("--set trigger..rate_hz=4: "));
+  EXPECT_THAT(faultOf("", {"rig.file=a\n[trigger]\nrate_hz=1"}), testing::StrEq("no fault"));
+}
+
+TEST(Config, TellsAMissingFileFromAMalformedOne) {
+  EXPECT_THAT(loadConfig("/nonexistent/kagamid.toml").error(),
+              AllOf(HasSubstr("/nonexistent/kagamid.toml"), HasSubstr("No such file")));
+  EXPECT_THAT(faultOf("[trigger\nrate_hz = 1"), StartsWith("kagamid.toml:1: "));
+}
+
+}  // namespace
