@@ -64,7 +64,7 @@ void visitFields(R& record, Visitor&& visit) {
   visit("vblank", record.vblank);
 }
 
-template <IsRecord<ThreadGrant> R, class Visitor>
+template <IsRecord<TracedThread> R, class Visitor>
 void visitFields(R& record, Visitor&& visit) {
   visit("name", record.name);
   visit("policy", record.policy);

@@ -73,7 +73,7 @@ using TraceRecord = std::variant<TriggerRecord, FrameRecord, SetRecord, PictureR
 static_assert(std::is_trivially_copyable_v<TraceRecord>, "records cross threads by copy");
 
 /// What a named thread asked for and what the kernel granted.
-struct ThreadGrant {
+struct TracedThread {
   std::string name;
   std::string policy;  ///< "fifo", "rr" or "other": what it really runs with
   int priority = 0;
@@ -95,7 +95,7 @@ struct RunRecord {
   std::uint32_t history_sets = 0;
   std::uint64_t memory_bytes = 0;  ///< the frame history, in-flight and reserve slots included
   bool memory_locked = false;
-  std::vector<ThreadGrant> threads;
+  std::vector<TracedThread> threads;
   std::vector<std::string> degraded;  ///< one line per thing that is less than configured
   rt::Timestamp start;
 };

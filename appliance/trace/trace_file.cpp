@@ -61,7 +61,7 @@ class LineAppender {
   std::string& text_;
 };
 
-json toJson(const ThreadGrant& grant);
+json toJson(const TracedThread& grant);
 
 /// Fills a JSON object with the fields of the two records that carry text.
 struct JsonFiller {
@@ -71,13 +71,13 @@ struct JsonFiller {
     object[name] = value;
   }
   void operator()(const char* name, rt::Timestamp instant) { object[name] = rt::toNs(instant); }
-  void operator()(const char* name, const std::vector<ThreadGrant>& grants) {
+  void operator()(const char* name, const std::vector<TracedThread>& grants) {
     json& list = object[name] = json::array();
-    for (const ThreadGrant& grant : grants) list.push_back(toJson(grant));
+    for (const TracedThread& grant : grants) list.push_back(toJson(grant));
   }
 };
 
-json toJson(const ThreadGrant& grant) {
+json toJson(const TracedThread& grant) {
   json object;
   visitFields(grant, JsonFiller{object});
   return object;
@@ -142,7 +142,7 @@ struct JsonReader {
       if (!take(item, to.emplace_back())) return false;
     return true;
   }
-  static bool take(const json& from, std::vector<ThreadGrant>& to) {
+  static bool take(const json& from, std::vector<TracedThread>& to) {
     if (!from.is_array()) return false;
     for (const json& item : from) {
       std::string wrong;
