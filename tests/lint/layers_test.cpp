@@ -1,0 +1,86 @@
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/lint/layer_table.h"
+#include "tests/lint/source_tree.h"
+
+namespace {
+
+using lint::LayerTable;
+using lint::SourceFile;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+LayerTable smallTable() {
+  return LayerTable::fromPage({.path = "docs/page.md",
+                               .lines = {
+                                   "Text | before.",
+                                   "| Folder | May include | Libraries |",
+                                   "|---|---|---|",
+                                   "| `rt` | - | - |",
+                                   "| `hal` | `rt` | - |",
+                                   "| `hal/aravis` | `rt` `hal` | `arv.h` |",
+                                   "| `appliance` | `rt` `hal` | `Eigen` |",
+                                   "| `appliance/main.cpp` | `*` | `*` |",
+                                   "",
+                               }});
+}
+
+TEST(LayerTable, AllowsDownwardsAndWithinAFolder) {
+  EXPECT_THAT(smallTable().violations(
+                  {.path = "hal/aravis/camera.cpp",
+                   .lines = {"#include <arv.h>", "#include <vector>", "#include <sys/mman.h>",
+                             "#include \"hal/camera.h\"", "#include \"hal/aravis/profile.h\""}}),
+              IsEmpty());
+}
+
+TEST(LayerTable, RefusesUpwardsWithFileAndLine) {
+  EXPECT_THAT(
+      smallTable().violations({.path = "rt/clock.h", .lines = {"", "#include \"hal/camera.h\""}}),
+      ElementsAre("rt/clock.h:2: rt may not include hal (hal/camera.h)"));
+}
+
+TEST(LayerTable, RefusesABackendInTheApplianceButNotInItsMain) {
+  const std::vector<std::string> lines = {"#include \"hal/aravis/camera.h\""};
+  EXPECT_THAT(smallTable().violations({.path = "appliance/capture/x.cpp", .lines = lines}),
+              ElementsAre(HasSubstr("appliance may not include hal/aravis")));
+  EXPECT_THAT(smallTable().violations({.path = "appliance/main.cpp", .lines = lines}), IsEmpty());
+}
+
+TEST(LayerTable, RefusesALibraryThatTheFolderDoesNotName) {
+  EXPECT_THAT(smallTable().violations({.path = "hal/camera.h", .lines = {"#include <arv.h>"}}),
+              ElementsAre(HasSubstr("hal may not use the library of <arv.h>")));
+}
+
+TEST(LayerTable, RefusesAFolderThatHasNoRow) {
+  EXPECT_THAT(smallTable().violations({.path = "extra/x.cpp", .lines = {}}),
+              ElementsAre(HasSubstr("no row")));
+}
+
+TEST(LayerTable, RefusesAnIncludeThatIsNotWrittenFromTheRoot) {
+  EXPECT_THAT(smallTable().violations({.path = "rt/clock.cpp", .lines = {"#include \"clock.h\""}}),
+              ElementsAre(HasSubstr("not written from the root")));
+}
+
+TEST(Tree, KeepsToTheLayerTableOfTheArchitecturePage) {
+  const auto table = LayerTable::fromPage(lint::read(lint::root(), "docs/architecture.md"));
+  ASSERT_GE(table.layers().size(), 8u) << "the layer table is missing from docs/architecture.md";
+  std::size_t includes_seen = 0;
+  for (const auto& file : lint::cppFilesOf(lint::readTree(lint::root()))) {
+    includes_seen += file.lines.size();
+    for (const auto& violation : table.violations(file)) ADD_FAILURE() << violation;
+  }
+  EXPECT_GT(includes_seen, 0u) << "no source file found under " << lint::root();
+}
+
+TEST(Tree, HasEveryFolderOfTheLayerTable) {
+  for (const auto& layer :
+       LayerTable::fromPage(lint::read(lint::root(), "docs/architecture.md")).layers()) {
+    EXPECT_TRUE(std::filesystem::exists(lint::root() / layer.folder)) << layer.folder;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,112 @@
+#include "tests/lint/source_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+namespace lint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 6> kTextSuffixes = {".h",    ".cpp", ".md",
+                                                           ".toml", ".txt", ".json"};
+
+bool isText(const fs::path& path) {
+  const auto suffix = path.extension().string();
+  return suffix.empty() || suffix == ".sh" || suffix == ".supp" ||
+         std::ranges::find(kTextSuffixes, suffix) != kTextSuffixes.end();
+}
+
+/// Outputs lie beside the sources: nobody wrote what is in them.
+bool isOutput(const fs::path& relative) {
+  const auto top = relative.begin()->string();
+  return top == "build" || top == "out" || top == ".git" || top == ".cache";
+}
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  const auto last = text.find_last_not_of(" \t\r");
+  return std::string(text.substr(first, last - first + 1));
+}
+
+/// "| a | b |" -> {"a", "b"}; empty for a line that is no table row.
+std::vector<std::string> cellsOf(const std::string& line) {
+  const auto row = trimmed(line);
+  if (row.size() < 2 || row.front() != '|' || row.back() != '|') return {};
+  std::vector<std::string> cells;
+  std::istringstream rest(row.substr(1));
+  for (std::string cell; std::getline(rest, cell, '|');) cells.push_back(trimmed(cell));
+  return cells;
+}
+
+}  // namespace
+
+fs::path root() {
+  return fs::path(KAGAMI_SOURCE_DIR);
+}
+
+SourceFile read(const fs::path& root, const std::string& path) {
+  SourceFile file{.path = path, .lines = {}};
+  std::ifstream in(root / path);
+  for (std::string line; std::getline(in, line);) file.lines.push_back(line);
+  return file;
+}
+
+std::vector<SourceFile> readTree(const fs::path& root) {
+  std::vector<std::string> paths;
+  for (fs::recursive_directory_iterator it(root), end; it != end; ++it) {
+    const auto relative = fs::relative(it->path(), root);
+    if (isOutput(relative)) {
+      it.disable_recursion_pending();
+    } else if (it->is_regular_file() && isText(relative)) {
+      paths.push_back(relative.generic_string());
+    }
+  }
+  std::ranges::sort(paths);
+  std::vector<SourceFile> files;
+  files.reserve(paths.size());
+  for (const auto& path : paths) files.push_back(read(root, path));
+  return files;
+}
+
+std::vector<SourceFile> cppFilesOf(const std::vector<SourceFile>& files) {
+  std::vector<SourceFile> cpp;
+  std::ranges::copy_if(files, std::back_inserter(cpp), [](const SourceFile& file) {
+    return file.path.ends_with(".h") || file.path.ends_with(".cpp");
+  });
+  return cpp;
+}
+
+std::vector<std::vector<std::string>> markdownTable(const SourceFile& page,
+                                                    const std::string& first_heading) {
+  std::vector<std::vector<std::string>> rows;
+  bool inside = false;
+  for (const auto& line : page.lines) {
+    auto cells = cellsOf(line);
+    if (!inside) {
+      inside = !cells.empty() && cells.front() == first_heading;
+    } else if (cells.empty()) {
+      break;
+    } else if (cells.front().find_first_not_of("-:") != std::string::npos) {
+      rows.push_back(std::move(cells));
+    }
+  }
+  return rows;
+}
+
+std::vector<std::string> quotedWords(const std::string& cell) {
+  std::vector<std::string> words;
+  for (auto open = cell.find('`'); open != std::string::npos;) {
+    const auto close = cell.find('`', open + 1);
+    if (close == std::string::npos) break;
+    words.push_back(cell.substr(open + 1, close - open - 1));
+    open = cell.find('`', close + 1);
+  }
+  return words;
+}
+
+}  // namespace lint
