@@ -25,11 +25,11 @@ std::optional<Include> includeOf(const std::string& line) {
 bool isSystemHeader(const std::string& header) {
   static constexpr std::array<std::string_view, 5> kFolders = {"sys/", "linux/", "arpa/", "net/",
                                                                "netinet/"};
-  static constexpr std::array<std::string_view, 26> kFiles = {
-      "cxxabi.h", "dirent.h",  "dlfcn.h",  "errno.h",     "execinfo.h",  "fcntl.h",  "getopt.h",
-      "grp.h",    "ifaddrs.h", "limits.h", "malloc.h",    "immintrin.h", "poll.h",   "pthread.h",
-      "pwd.h",    "sched.h",   "signal.h", "spawn.h",     "stdlib.h",    "string.h", "syslog.h",
-      "time.h",   "termios.h", "unistd.h", "semaphore.h", "endian.h"};
+  static constexpr std::array<std::string_view, 27> kFiles = {
+      "alloca.h",  "cxxabi.h", "dirent.h",  "dlfcn.h",  "errno.h",     "execinfo.h",  "fcntl.h",
+      "getopt.h",  "grp.h",    "ifaddrs.h", "limits.h", "malloc.h",    "immintrin.h", "poll.h",
+      "pthread.h", "pwd.h",    "sched.h",   "signal.h", "spawn.h",     "stdlib.h",    "string.h",
+      "syslog.h",  "time.h",   "termios.h", "unistd.h", "semaphore.h", "endian.h"};
   const bool standard = header.find_first_of("./") == std::string::npos;
   return standard || std::ranges::find(kFiles, header) != kFiles.end() ||
          std::ranges::any_of(kFolders, [&](auto folder) { return header.starts_with(folder); });
