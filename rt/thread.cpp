@@ -153,6 +153,8 @@ Result<Thread> Thread::start(ThreadConfig config, std::function<void(std::stop_t
   return thread;
 }
 
+Thread::Thread() noexcept = default;
+
 Thread::Thread(Thread&& other) noexcept
     : state_(std::move(other.state_)), handle_(other.handle_), grant_(other.grant_) {}
 

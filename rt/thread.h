@@ -63,7 +63,7 @@ class Thread {
   [[nodiscard]] static Result<Thread> start(ThreadConfig config,
                                             std::function<void(std::stop_token)> body);
 
-  Thread() = default;
+  Thread() noexcept;
   Thread(Thread&& other) noexcept;
   Thread& operator=(Thread&& other) noexcept;
   ~Thread();
