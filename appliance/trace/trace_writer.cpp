@@ -22,15 +22,15 @@ std::string describe(const std::string& path, int error) {
 }  // namespace
 
 std::expected<std::unique_ptr<TraceWriter>, std::string> TraceWriter::open(const std::string& path,
-                                                                           const RunRecord& run,
                                                                            std::size_t producers) {
   std::FILE* file = std::fopen(path.c_str(), "we");
   if (file == nullptr) return std::unexpected(describe(path, errno));
-  std::unique_ptr<TraceWriter> writer(new TraceWriter(path, file, producers));
-  writer->write(toLine(run));
-  TraceWriter* self = writer.get();
-  writer->thread_ = std::jthread([self](const std::stop_token& stop) { self->run(stop); });
-  return writer;
+  return std::unique_ptr<TraceWriter>(new TraceWriter(path, file, producers));
+}
+
+void TraceWriter::begin(const RunRecord& run) {
+  write(toLine(run));
+  thread_ = std::jthread([this](const std::stop_token& stop) { this->run(stop); });
 }
 
 TraceWriter::TraceWriter(std::string path, std::FILE* file, std::size_t producers)

@@ -36,14 +36,19 @@ class TraceProducer {
 /// Writes the trace file: one thread, SCHED_OTHER, empties the producers' rings a few times a
 /// second. Producers never wait for it; what it is too slow for is dropped and counted.
 ///
-/// Threads  open(), finish(): the owner. producer(i): set up by the owner, used by one thread each.
-/// Memory   All rings are made in open(); producers outlive their threads' last record().
-/// Errors   A file that cannot be made or written: one line for a person. Writing errors while
+/// Threads  open(), begin(), finish(): the owner. producer(i): set up by the owner, used by one
+/// thread each. Memory   All rings are made in open(); producers outlive their threads' last
+/// record(). Errors   A file that cannot be made or written: one line for a person. Writing errors
+/// while
 ///          running stop the writing, not the daemon, and are told by finish().
 class TraceWriter {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<TraceWriter>, std::string> open(
-      const std::string& path, const RunRecord& run, std::size_t producers);
+      const std::string& path, std::size_t producers);
+
+  /// Writes the head and starts to drain. Until then the rings hold what is recorded: the
+  /// threads that the head lists may already run.
+  void begin(const RunRecord& run);
 
   ~TraceWriter() = default;  ///< without finish(): the records not yet written are gone
   TraceWriter(const TraceWriter&) = delete;
