@@ -1,0 +1,99 @@
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "rt/slot_pool.h"
+
+namespace {
+
+TEST(SlotState, IsFreeUntilPublishedAndAgainWhenRetired) {
+  rt::SlotState state;
+  EXPECT_TRUE(state.isFree());
+  state.publish(1);
+  EXPECT_FALSE(state.isFree());
+  EXPECT_TRUE(state.retire());
+  EXPECT_TRUE(state.isFree());
+}
+
+TEST(SlotState, IsPinnedOnlyUnderItsOwnTagWhilePublished) {
+  rt::SlotState state;
+  EXPECT_FALSE(state.tryPin(0));  // a fresh word is not "published under tag 0"
+  state.publish(rt::SlotState::kMaxTag);
+  EXPECT_FALSE(state.tryPin(0));
+  EXPECT_FALSE(state.tryPin(rt::SlotState::kMaxTag - 1));
+  ASSERT_TRUE(state.tryPin(rt::SlotState::kMaxTag));
+  EXPECT_FALSE(state.retire());
+  EXPECT_FALSE(state.tryPin(rt::SlotState::kMaxTag));
+  state.unpin();
+  EXPECT_TRUE(state.isFree());
+}
+
+TEST(SlotState, IsFreeOnlyAfterTheLastOfSeveralPins) {
+  rt::SlotState state;
+  state.publish(9);
+  ASSERT_TRUE(state.tryPin(9));
+  ASSERT_TRUE(state.tryPin(9));
+  EXPECT_FALSE(state.retire());
+  state.unpin();
+  EXPECT_FALSE(state.isFree());
+  state.unpin();
+  EXPECT_TRUE(state.isFree());
+}
+
+TEST(SlotState, RefusesMorePinsThanItCanCountInsteadOfOverflowing) {
+  rt::SlotState state;
+  state.publish(5);
+  for (std::uint64_t i = 0; i < rt::SlotState::kMaxPins; ++i) ASSERT_TRUE(state.tryPin(5));
+  EXPECT_FALSE(state.tryPin(5));
+  EXPECT_FALSE(state.retire());
+  for (std::uint64_t i = 0; i < rt::SlotState::kMaxPins; ++i) state.unpin();
+  EXPECT_TRUE(state.isFree());
+}
+
+TEST(SlotPool, HandsOutEverySlotOnceAndThenRefuses) {
+  rt::SlotPool pool(4);
+  std::set<std::uint32_t> slots;
+  for (int i = 0; i < 4; ++i) slots.insert(pool.tryAcquire().value());
+  EXPECT_EQ(slots, (std::set<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_FALSE(pool.tryAcquire().has_value());
+  pool.giveBack(2);
+  EXPECT_EQ(pool.tryAcquire(), 2u);
+}
+
+TEST(SlotPool, ParksAPinnedSlotAndCollectsItOnceUnpinned) {
+  rt::SlotPool pool(1);
+  const auto slot = pool.tryAcquire().value();
+  pool.publish(slot, 1);
+  {
+    const auto pin = pool.tryPin(slot, 1);
+    ASSERT_TRUE(pin.has_value());
+    EXPECT_EQ(pin->slot(), slot);
+    pool.retire(slot);
+    EXPECT_EQ(pool.parkedSlots(), 1u);
+    EXPECT_FALSE(pool.tryAcquire().has_value());  // refused at once, not waited for
+    EXPECT_FALSE(pool.tryPin(slot, 1).has_value());
+  }
+  EXPECT_EQ(pool.tryAcquire(), slot);
+  EXPECT_EQ(pool.parkedSlots(), 0u);
+}
+
+TEST(SlotPin, UnpinsOnceHoweverOftenItMoves) {
+  rt::SlotPool pool(2);
+  const auto first = pool.tryAcquire().value();
+  const auto second = pool.tryAcquire().value();
+  pool.publish(first, 1);
+  pool.publish(second, 2);
+  {
+    auto shown = pool.tryPin(first, 1);
+    auto next = pool.tryPin(second, 2);
+    ASSERT_TRUE(shown && next);
+    rt::SlotPin held = std::move(*shown);
+    held = std::move(*next);
+    EXPECT_EQ(held.slot(), second);
+  }
+  pool.retire(first);
+  pool.retire(second);
+  EXPECT_EQ(pool.freeSlots(), 2u);
+}
+
+}  // namespace
