@@ -1,0 +1,31 @@
+#pragma once
+
+#include <expected>
+#include <string>
+
+#include "hal/display.h"
+#include "ui-kms/gl_objects.h"
+
+namespace ui {
+
+/// Full colour by the gradient-corrected 5x5 filters of Malvar, He and Cutler ("High-quality
+/// linear interpolation for demosaicing of Bayer-patterned color images", 2004), for a GPU.
+///
+/// Threads  The one that has the context.
+class DemosaicPass {
+ public:
+  [[nodiscard]] static std::expected<DemosaicPass, std::string> create();
+
+  /// @p mosaic: R8, the size of @p target. Linear light in and out.
+  void draw(GLuint mosaic, hal::PixelFormat format, const RenderTarget& target);
+
+ private:
+  DemosaicPass() = default;
+
+  GlProgram program_;
+  GlVertexArray no_attributes_;
+  GLint red_at_ = -1;
+  GLint mono_ = -1;
+};
+
+}  // namespace ui

@@ -1,0 +1,73 @@
+#include "ui-kms/egl_context.h"
+
+#include <cstdlib>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GLES3/gl3.h>
+
+namespace ui {
+namespace {
+
+constexpr const char* kInstall = "install libegl1, libgles2 and libgl1-mesa-dri, or a GPU's driver";
+
+EGLDisplay openSurfaceless() {
+  const auto get_platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+      eglGetProcAddress("eglGetPlatformDisplayEXT"));
+  if (get_platform_display == nullptr) return EGL_NO_DISPLAY;
+  // The handle is the process's only one for this platform, so no context ever terminates it.
+  return get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+}
+
+}  // namespace
+
+std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
+    std::optional<unsigned> software_threads) {
+  if (software_threads) {
+    // An operator's own setting of the driver's variable goes first.
+    ::setenv("LP_NUM_THREADS", std::to_string(*software_threads).c_str(), /*replace=*/0);
+  }
+  EGLDisplay display = openSurfaceless();
+  if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
+    return std::unexpected(std::string("no EGL without a window system: ") + kInstall);
+  }
+  const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
+  const EGLint version[] = {EGL_CONTEXT_CLIENT_VERSION, 3, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  eglBindAPI(EGL_OPENGL_ES_API);
+  if (eglChooseConfig(display, wanted, &config, 1, &count) == EGL_FALSE || count == 0) {
+    return std::unexpected(std::string("EGL offers no OpenGL ES 3: ") + kInstall);
+  }
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
+  if (context == EGL_NO_CONTEXT) {
+    return std::unexpected(std::string("no OpenGL ES 3 context: ") + kInstall);
+  }
+  std::unique_ptr<EglContext> made(new EglContext(display, context));
+  if (!made->bind()) {
+    return std::unexpected(std::string("EGL cannot make a context current without a surface: ") +
+                           kInstall);
+  }
+  made->renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  made->software_ = made->renderer_.find("llvmpipe") != std::string::npos ||
+                    made->renderer_.find("softpipe") != std::string::npos;
+  return made;
+}
+
+EglContext::~EglContext() {
+  release();
+  eglDestroyContext(display_, context_);
+}
+
+bool EglContext::bind() {
+  if (eglGetCurrentContext() == context_) return true;
+  eglBindAPI(EGL_OPENGL_ES_API);  // the choice of API is per thread
+  return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE;
+}
+
+void EglContext::release() {
+  if (eglGetCurrentContext() != context_) return;
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+}  // namespace ui

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <expected>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace ui {
+
+/// One OpenGL ES 3 context without a window surface: pictures go into framebuffer objects.
+///
+/// Threads  create() runs on a SCHED_OTHER thread, because the driver's own threads inherit
+///          the policy of the thread that makes the context. It leaves the context current
+///          there, for making objects; release() ends that. bind() hands it to its caller.
+/// Errors   create(): one line that says what is missing and what to install.
+class EglContext {
+ public:
+  /// @p software_threads: worker threads of a software renderer (0 draws on the caller);
+  /// without a value the driver's default. Only the first context of a process decides.
+  [[nodiscard]] static std::expected<std::unique_ptr<EglContext>, std::string> create(
+      std::optional<unsigned> software_threads);
+  ~EglContext();
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  /// Makes the context current on the calling thread; cheap where it already is.
+  /// False where another thread holds it.
+  [[nodiscard]] bool bind();
+  /// The calling thread lets go of the context.
+  void release();
+
+  /// GL_RENDERER.
+  [[nodiscard]] const std::string& renderer() const { return renderer_; }
+  /// Whether the CPU draws: then every shader instruction is paid in milliseconds.
+  [[nodiscard]] bool software() const { return software_; }
+
+ private:
+  EglContext(void* display, void* context) : display_(display), context_(context) {}
+
+  void* display_;  // EGLDisplay and EGLContext: EGL's header stays out of ours
+  void* context_;
+  std::string renderer_;
+  bool software_ = false;
+};
+
+}  // namespace ui

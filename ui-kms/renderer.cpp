@@ -1,0 +1,69 @@
+#include "ui-kms/renderer.h"
+
+#include <cassert>
+#include <cstring>
+#include <vector>
+
+#include "rt/clock.h"
+
+namespace ui {
+
+std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
+    const RendererConfig& config) {
+  auto context = EglContext::create(config.software_threads);
+  if (!context) return std::unexpected(context.error());
+  std::unique_ptr<Renderer> renderer(new Renderer(std::move(*context)));
+  DemosaicSite site = config.demosaic;
+  if (site == DemosaicSite::kAuto) {
+    site = renderer->context_->software() ? DemosaicSite::kCpu : DemosaicSite::kGpu;
+  }
+  auto source = SourceTexture::create(site);
+  if (!source) return std::unexpected(source.error());
+  renderer->source_ = std::move(*source);
+  auto warp = WarpPass::create(config.width_px, config.height_px);
+  if (!warp) return std::unexpected(warp.error());
+  renderer->warp_ = std::move(*warp);
+  if (auto status = StatusLinePass::create(config.font_path, config.width_px, config.height_px)) {
+    renderer->status_ = std::move(*status);
+  } else {
+    renderer->text_warning_ = status.error() + "; pictures go on without text";
+  }
+  renderer->warmUp(config);
+  return renderer;
+}
+
+/// Drivers compile at the first draw. That belongs here, on the thread that may take its time
+/// (and whose scheduling policy the driver's threads inherit), not into the first picture.
+void Renderer::warmUp(const RendererConfig& config) {
+  const std::uint32_t width_px = config.source_width_px != 0 ? config.source_width_px : 64;
+  const std::uint32_t height_px = config.source_height_px != 0 ? config.source_height_px : 64;
+  const std::vector<std::byte> black(std::size_t{width_px} * height_px);
+  hal::WarpPlan plan;
+  plan.source = {black.data(), width_px, height_px, hal::PixelFormat::kBayerRG8};
+  plan.H_camera_display = {1, 0, -16, 0, 1, -16, 0, 0, 1};  // inner and edge cells both
+  plan.lens = {.fx_px = 1, .fy_px = 1, .max_radius = 1e9};
+  hal::StatusLine status;
+  std::strncpy(status.text.data(), "kagami", status.text.size() - 1);
+  const RenderTarget target = makeRenderTarget(config.width_px, config.height_px);
+  draw(target, &plan, status);
+}
+
+hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::WarpPlan* plan,
+                                   const hal::StatusLine& status) {
+  hal::RenderInstants instants;
+  instants.warp_submit = rt::now();
+  const bool drawable = plan != nullptr && plan->source.pixels != nullptr;
+  const GLuint texture = drawable ? source_->upload(plan->source) : 0;
+  instants.upload_end = rt::now();
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+  glViewport(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px));
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  if (drawable) warp_->draw(*plan, texture);
+  if (status_) status_->draw(status);
+  glFinish();
+  instants.warp_end = rt::now();
+  return instants;
+}
+
+}  // namespace ui

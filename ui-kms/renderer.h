@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hal/display.h"
+#include "ui-kms/egl_context.h"
+#include "ui-kms/gl_objects.h"
+#include "ui-kms/source_texture.h"
+#include "ui-kms/status_line_pass.h"
+#include "ui-kms/warp_pass.h"
+
+namespace ui {
+
+struct RendererConfig {
+  std::uint32_t width_px = 1280;
+  std::uint32_t height_px = 720;
+  /// Of the cameras, so that their storage exists before the first picture.
+  std::uint32_t source_width_px = 0;
+  std::uint32_t source_height_px = 0;
+  std::string font_path;                     ///< empty: the usual places of DejaVu Sans
+  std::optional<unsigned> software_threads;  ///< of a software renderer; none: its default
+  DemosaicSite demosaic = DemosaicSite::kAuto;
+};
+
+/// From a plan and a status line to a finished picture in a render target; what every display
+/// of this folder draws with.
+///
+/// Threads  create() on a SCHED_OTHER thread; then one caller, which binds the context.
+class Renderer {
+ public:
+  [[nodiscard]] static std::expected<std::unique_ptr<Renderer>, std::string> create(
+      const RendererConfig& config);
+
+  [[nodiscard]] EglContext& context() { return *context_; }
+  [[nodiscard]] const EglContext& context() const { return *context_; }
+  /// Why there is no status line; empty where there is one.
+  [[nodiscard]] const std::string& textWarning() const { return text_warning_; }
+
+  /// Draws all of @p target; the pixels are written when it returns.
+  hal::RenderInstants draw(const RenderTarget& target, const hal::WarpPlan* plan,
+                           const hal::StatusLine& status);
+
+ private:
+  explicit Renderer(std::unique_ptr<EglContext> context) : context_(std::move(context)) {}
+  void warmUp(const RendererConfig& config);
+
+  std::unique_ptr<EglContext> context_;  // first, so that it outlives all GL objects
+  std::optional<SourceTexture> source_;
+  std::optional<WarpPass> warp_;
+  std::optional<StatusLinePass> status_;
+  std::string text_warning_;
+};
+
+}  // namespace ui

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hal/display.h"
+
+namespace ui {
+
+/// One corner of the mesh; position is fixed by the index.
+struct WarpVertex {
+  /// Source texture coordinate times w, and w: linear over the display as the rasteriser needs it.
+  float texture_u_w = 0, texture_v_w = 0, texture_w = 0;
+  /// H_camera_display times the display pixel: undistorted, homogeneous, pixels.
+  float ray_x = 0, ray_y = 0, ray_w = 0;
+};
+
+/// The backward map of one plan over a coarse grid of the display.
+///
+/// A cell wholly inside lens and source is `inner`: the distortion is evaluated at its corners and
+/// interpolated in camera space, so perspective is exact. A cell that the border may cross is
+/// `edge`: a shader evaluates it per pixel. A cell that certainly shows nothing is in neither.
+///
+/// The valid region (w > 0 and radius <= max_radius) is the preimage of a disc under a homography
+/// and therefore convex: four valid corners make a valid cell.
+///
+/// Memory   All storage is made by the constructor.
+class WarpMesh {
+ public:
+  static constexpr std::uint32_t kCellPx = 32;
+
+  WarpMesh(std::uint32_t width_px, std::uint32_t height_px);
+
+  void update(const hal::WarpPlan& plan);
+
+  [[nodiscard]] const std::vector<WarpVertex>& vertices() const { return vertices_; }
+  /// Six indices, two triangles, per cell.
+  [[nodiscard]] const std::vector<std::uint16_t>& innerIndices() const { return inner_; }
+  [[nodiscard]] const std::vector<std::uint16_t>& edgeIndices() const { return edge_; }
+  /// Column @p i's left border in display pixels: -0.5 is the picture's edge.
+  [[nodiscard]] double columnPx(std::uint32_t i) const;
+  [[nodiscard]] double rowPx(std::uint32_t j) const;
+  [[nodiscard]] std::uint32_t columns() const { return columns_; }
+  [[nodiscard]] std::uint32_t rows() const { return rows_; }
+
+ private:
+  enum class Cell : std::uint8_t { kInner, kEdge, kOutside };
+  void updateVertices(const hal::WarpPlan& plan);
+  [[nodiscard]] Cell classify(std::size_t first) const;
+
+  std::uint32_t width_px_;
+  std::uint32_t height_px_;
+  std::uint32_t columns_;  // of corners: one more than cells
+  std::uint32_t rows_;
+  std::vector<WarpVertex> vertices_;
+  std::vector<std::uint8_t> where_;  // per corner: bits of warp_mesh.cpp
+  std::vector<std::uint16_t> inner_;
+  std::vector<std::uint16_t> edge_;
+};
+
+}  // namespace ui
