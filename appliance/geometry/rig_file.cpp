@@ -1,0 +1,174 @@
+#include "appliance/geometry/rig_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "appliance/config/toml_reader.h"
+#include "appliance/geometry/homography.h"
+#include "appliance/geometry/lens.h"
+
+namespace appliance {
+namespace {
+
+constexpr std::int64_t kFormat = 1;
+/// Rows written with six decimals are orthonormal to about 1e-6; a typing error is far above.
+constexpr double kRotationTolerance = 1e-4;
+constexpr std::int64_t kLargestSide_px = 16384;
+constexpr double kLargestFocal_px = 1e6;
+/// Everything a rig measures in metres; beyond it somebody wrote millimetres.
+constexpr double kLargestLength_m = 1000;
+constexpr NumberRange kLength = {-kLargestLength_m, kLargestLength_m, "m"};
+
+std::string metres(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g m", value);
+  return text.data();
+}
+
+/// A focal length of the rig file: strictly positive.
+constexpr NumberRange kFocal = {1, kLargestFocal_px, "px"};
+
+void readPose(const TomlTable& table, RigCamera& camera) {
+  const std::vector<double> rows = table.matrix("T_cam_rig", 3, 4);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> T(rows.data());
+  camera.R_cam_rig = T.leftCols<3>();
+  camera.t_cam_rig_m = T.col(3);
+  const Eigen::Matrix3d& R = camera.R_cam_rig;
+  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <=
+        kRotationTolerance)) {
+    table.fail("T_cam_rig",
+               "the left 3x3 of T_cam_rig is not a rotation (its rows are not unit vectors at "
+               "right angles); calibrate again or correct the numbers");
+  } else if (R.determinant() < 0) {
+    table.fail("T_cam_rig",
+               "the left 3x3 of T_cam_rig mirrors (determinant -1); camera axes are x right, "
+               "y down, z forward");
+  } else if (!(camera.t_cam_rig_m.cwiseAbs().maxCoeff() <= kLargestLength_m)) {
+    table.fail("T_cam_rig",
+               "the last column of T_cam_rig is in metres and may not exceed 1000 m; "
+               "is it in millimetres?");
+  }
+}
+
+RigCamera readCamera(TomlTable& table, std::size_t number) {
+  RigCamera camera;
+  table.setLabel("camera " + std::to_string(number));
+  camera.name = table.textOr("name", "");
+  if (!camera.name.empty()) table.setLabel("camera \"" + camera.name + "\"");
+  table.allowKeys(
+      {"name", "image_size_px", "focal_px", "centre_px", "distortion", "T_cam_rig", "gain_rgb"});
+  if (table.text("name").empty()) table.fail("name", "name is empty; give the camera one");
+
+  const auto size_px = table.numbers<2>("image_size_px", {1, kLargestSide_px, "px"});
+  if (size_px[0] != std::floor(size_px[0]) || size_px[1] != std::floor(size_px[1]))
+    table.fail("image_size_px", "image_size_px must be two whole numbers: width, height");
+  camera.width_px = static_cast<std::uint32_t>(size_px[0]);
+  camera.height_px = static_cast<std::uint32_t>(size_px[1]);
+
+  hal::Lens& lens = camera.lens;
+  const auto focal_px = table.numbers<2>("focal_px", kFocal);
+  lens.fx_px = focal_px[0];
+  lens.fy_px = focal_px[1];
+  // The optical axis may leave a cropped picture, but not by more than its size.
+  const double largest_side_px = std::max(size_px[0], size_px[1]);
+  const auto centre_px =
+      table.numbers<2>("centre_px", {-largest_side_px, 2 * largest_side_px, "px"});
+  lens.cx_px = centre_px[0];
+  lens.cy_px = centre_px[1];
+  lens.distortion = table.numbers<5>("distortion", {-1000, 1000, ""});
+  readPose(table, camera);
+  const auto gain_rgb = table.has("gain_rgb") ? table.numbers<3>("gain_rgb", {0.01, 100, ""})
+                                              : std::array<double, 3>{1, 1, 1};
+  std::ranges::transform(gain_rgb, camera.gain_rgb.begin(),
+                         [](double gain) { return static_cast<float>(gain); });
+  return camera;
+}
+
+/// Sets the radius up to which the lens model holds, and refuses one that hardly holds at all.
+void checkLens(const TomlTable& table, RigCamera& camera) {
+  hal::Lens& lens = camera.lens;
+  lens.max_radius = maxRadius(lens, camera.width_px, camera.height_px);
+  const double half_diagonal =
+      std::hypot(camera.width_px / lens.fx_px, camera.height_px / lens.fy_px) / 2;
+  if (lens.max_radius < half_diagonal / 4)
+    table.fail("distortion",
+               "distortion folds the picture near its centre; check the order k1 k2 p1 p2 k3 or "
+               "calibrate again");
+}
+
+/// Whether the camera can show the rig's working point at all.
+void checkTarget(const TomlTable& table, const RigCamera& camera, const Eigen::Vector3d& target_m) {
+  const Eigen::Vector3d target_cam_m = camera.R_cam_rig * target_m + camera.t_cam_rig_m;
+  const double distance_m = target_cam_m.norm();
+  if (distance_m < kNearestTarget_m) {
+    table.fail("T_cam_rig", "target_m lies " + metres(distance_m) +
+                                " from the camera itself; correct target_m or T_cam_rig (x_cam = "
+                                "R x_rig + t, in metres)");
+  } else if (target_cam_m.z() <= kSmallestAxisCosine * distance_m) {
+    table.fail("T_cam_rig",
+               "target_m lies behind the camera; correct target_m or T_cam_rig (x_cam = R x_rig + "
+               "t: is the inverse written down?)");
+  }
+}
+
+std::expected<Rig, std::string> readRig(const TomlFile& file) {
+  const TomlTable root = file.root();
+  // The format comes first: a newer file may well hold keys that are unknown here.
+  const std::int64_t format = root.integer("format");
+  if (root.has("format") && format != kFormat)
+    root.fail("format", "format " + std::to_string(format) +
+                            " is not known here, only format 1; update the appliance or convert "
+                            "the file");
+  root.allowKeys(
+      {"format", "name", "target_m", "reference_focal_px", "reference_distance_m", "camera"});
+
+  Rig rig;
+  rig.name = root.textOr("name", "");
+  const auto target_m = root.numbers<3>("target_m", kLength);
+  rig.target_m = Eigen::Map<const Eigen::Vector3d>(target_m.data());
+  rig.reference_focal_px =
+      root.has("reference_focal_px") ? root.number("reference_focal_px", kFocal) : 0;
+  rig.reference_distance_m =
+      root.has("reference_distance_m")
+          ? root.number("reference_distance_m", {kNearestTarget_m, kLargestLength_m, "m"})
+          : 0;
+
+  std::vector<TomlTable> tables = root.tables("camera");
+  if (tables.empty()) root.fail("camera", "no camera; write one [[camera]] table for each");
+  if (tables.size() > kMaxCameras)
+    root.fail("camera", std::to_string(tables.size()) + " cameras, at most " +
+                            std::to_string(kMaxCameras) + " are possible; remove some");
+  for (TomlTable& table : tables) {
+    if (file.fault()) break;
+    RigCamera camera = readCamera(table, rig.cameras.size() + 1);
+    if (file.fault()) break;  // the checks below need sound numbers
+    if (std::ranges::find(rig.cameras, camera.name, &RigCamera::name) != rig.cameras.end())
+      table.fail("name", "the name is used twice; names must differ");
+    checkTarget(table, camera, rig.target_m);
+    checkLens(table, camera);
+    rig.cameras.push_back(std::move(camera));
+  }
+  if (file.fault()) return std::unexpected(*file.fault());
+  fillReferences(rig);
+  return rig;
+}
+
+}  // namespace
+
+std::expected<Rig, std::string> loadRig(const std::string& path) {
+  const auto file = TomlFile::load(path);
+  if (!file) return std::unexpected(file.error());
+  return readRig(*file);
+}
+
+std::expected<Rig, std::string> parseRig(std::string_view text, std::string name) {
+  const auto file = TomlFile::parse(text, std::move(name));
+  if (!file) return std::unexpected(file.error());
+  return readRig(*file);
+}
+
+}  // namespace appliance

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <string_view>
+
+#include "appliance/geometry/rig.h"
+
+namespace appliance {
+
+/// Reads a rig file of format 1, described in docs/rig-file.md.
+///
+/// RT      Not RT safe.
+/// Errors  One line that says file, line, camera, what is wrong and what to do. A rig that is
+///         returned is sound: finite, rotations proper, the target in front of every camera.
+[[nodiscard]] std::expected<Rig, std::string> loadRig(const std::string& path);
+
+/// The same from memory; @p name stands in messages in place of a path.
+[[nodiscard]] std::expected<Rig, std::string> parseRig(std::string_view text, std::string name);
+
+}  // namespace appliance
