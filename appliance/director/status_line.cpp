@@ -1,0 +1,96 @@
+#include "appliance/director/status_line.h"
+
+#include <array>
+#include <string_view>
+
+namespace appliance {
+namespace {
+
+/// Appends to a line and cuts what does not fit; the terminating zero always does.
+class LineWriter {
+ public:
+  explicit LineWriter(hal::StatusLine& line) : line_(line) {}
+
+  LineWriter& operator<<(std::string_view text) {
+    for (const char c : text) {
+      if (used_ + 1 < line_.text.size()) line_.text[used_++] = c;
+    }
+    return *this;
+  }
+
+  LineWriter& operator<<(std::uint64_t number) {
+    std::array<char, 20> digits{};
+    std::size_t first = digits.size();
+    do {
+      digits[--first] = static_cast<char>('0' + number % 10);
+      number /= 10;
+    } while (number != 0);
+    return *this << std::string_view(digits.data() + first, digits.size() - first);
+  }
+
+  /// Seconds with @p decimals places, rounded.
+  void seconds(rt::Nanoseconds time, int decimals) {
+    std::uint64_t unit_ns = 1'000'000'000;
+    for (int i = 0; i < decimals; ++i) unit_ns /= 10;
+    const auto time_ns = static_cast<std::uint64_t>(time.count() < 0 ? 0 : time.count());
+    const std::uint64_t units = (time_ns + unit_ns / 2) / unit_ns;
+    const std::uint64_t per_second = 1'000'000'000 / unit_ns;
+    *this << units / per_second << ".";
+    for (std::uint64_t place = per_second / 10; place != 0; place /= 10) {
+      *this << units / place % 10;
+    }
+    *this << " s";
+  }
+
+ private:
+  hal::StatusLine& line_;
+  std::size_t used_ = 0;
+};
+
+void writeMode(LineWriter& out, const Shot& shot) {
+  switch (shot.mode) {
+    case Mode::kLive:
+      out << "LIVE";
+      break;
+    case Mode::kDelayed:
+      out << "DELAY ";
+      out.seconds(shot.delay, 1);
+      break;
+    case Mode::kFrozen:
+      out << "FROZEN -";
+      out.seconds(shot.delay, 2);
+      break;
+    case Mode::kSweep:
+      out << "SWEEP -";
+      out.seconds(shot.delay, 2);
+      break;
+  }
+}
+
+void writeBadge(LineWriter& out, const Shot& shot) {
+  if (shot.substitute == Substitute::kNone) return;
+  const std::uint64_t wanted = shot.camera_wanted + 1;
+  out << "   camera " << wanted
+      << (shot.substitute == Substitute::kLost ? " lost" : " has no picture of this moment");
+  if (shot.camera_shown != shot.camera_wanted) {
+    out << ": showing " << std::uint64_t{shot.camera_shown} + 1;
+  } else if (shot.trigger != 0) {
+    out << ": showing its last picture";
+  }
+}
+
+}  // namespace
+
+hal::StatusLine statusLine(const Shot& shot, std::uint32_t cameras) RT_SAFE {
+  hal::StatusLine line;
+  LineWriter out(line);
+  writeMode(out, shot);
+  out << "   view " << std::uint64_t{shot.camera_wanted} + 1 << "/" << std::uint64_t{cameras};
+  if (shot.at_history_end) out << "   end of memory";
+  if (shot.trigger == 0) out << "   no picture yet";
+  writeBadge(out, shot);
+  line.warning = shot.substitute != Substitute::kNone || shot.trigger == 0;
+  return line;
+}
+
+}  // namespace appliance
