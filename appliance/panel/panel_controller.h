@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "appliance/director/command.h"
+#include "hal/button_panel.h"
+#include "rt/clock.h"
+
+namespace appliance {
+
+/// A command and the instant that caused it: button_to_commit is measured from there.
+struct PanelCommand {
+  Command command;
+  rt::Timestamp cause;  ///< the contact's change, or when the repetition was due
+};
+
+/// Turns the panel's contacts into commands: a pure state machine.
+///
+/// A press acts at once, not its release. Step, delay and view keys repeat while held: after
+/// kRepeatAfter, then every kRepeatEvery; only the key pressed last repeats. Keys held
+/// together have no meaning of their own: each press acts alone, so that a stuck key blocks
+/// no other. A second press of a key that is down already is bounce and ignored. A release that
+/// got lost is found by reading the contacts of all keys that are down, kRepeatEvery and before
+/// each repetition.
+///
+/// Threads  One: the panel thread.
+/// RT       Not RT safe (the level is read from hardware).
+class PanelController {
+ public:
+  static constexpr rt::Nanoseconds kRepeatAfter = std::chrono::milliseconds(400);
+  static constexpr rt::Nanoseconds kRepeatEvery = std::chrono::milliseconds(125);
+
+  /// Whether the contact is closed now: hal::ButtonPanel::isPressed().
+  using Level = std::function<bool(hal::Button)>;
+
+  explicit PanelController(Level level) : level_(std::move(level)) {}
+
+  /// What a change of contact asks for, if anything.
+  [[nodiscard]] std::optional<PanelCommand> onEvent(const hal::ButtonEvent& event);
+
+  /// The repetition that is due at @p now, if any; at most one per call, late ones are not
+  /// made up for.
+  [[nodiscard]] std::optional<PanelCommand> onTime(rt::Timestamp now);
+
+  /// When onTime() is to be called next; nothing while no key is down.
+  [[nodiscard]] std::optional<rt::Timestamp> nextTime() const;
+
+ private:
+  struct Repetition {
+    hal::Button button;
+    rt::Timestamp due;
+  };
+
+  Level level_;
+  std::array<bool, hal::kButtonNames.size()> down_{};
+  std::optional<Repetition> repetition_;
+  rt::Timestamp next_check_;  // of the contacts, while a key is down
+};
+
+}  // namespace appliance
