@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "hal/camera.h"
+
+namespace hal {
+
+/// Everything that must be in force in a camera before its first frame counts: pushed
+/// as a whole and read back, because cameras forget their settings with their power.
+struct CameraProfile {
+  std::string name;     ///< for messages: "cam07"
+  std::string address;  ///< IPv4; cameras are opened by address, never by discovery
+
+  std::uint32_t width_px = 1280;
+  std::uint32_t height_px = 1024;
+  PixelFormat pixel_format = PixelFormat::kBayerRG8;
+
+  double exposure_us = 1000;  ///< all automatic functions are switched off
+  double gain_db = 0;
+  std::array<double, 3> white_balance_rgb{1, 1, 1};  ///< in the camera; equal for all of a rig
+  std::string trigger_source = "Line1";
+
+  std::uint32_t packet_size_bytes = 9000;  ///< IP datagram; explicit, never negotiated
+  std::uint32_t packet_delay_ns = 0;       ///< between two packets, beyond the link's own pace
+  std::uint32_t socket_buffer_bytes = 4U << 20;
+  std::uint32_t packet_timeout_us = 5000;    ///< a packet this late is asked for again
+  std::uint32_t frame_retention_us = 30000;  ///< an incomplete frame blocks later ones this long
+};
+
+/// GenICam's name of the format.
+[[nodiscard]] constexpr const char* genicamName(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kBayerRG8:
+      return "BayerRG8";
+    case PixelFormat::kBayerGB8:
+      return "BayerGB8";
+    case PixelFormat::kBayerGR8:
+      return "BayerGR8";
+    case PixelFormat::kBayerBG8:
+      return "BayerBG8";
+    case PixelFormat::kMono8:
+      return "Mono8";
+  }
+  return "";
+}
+
+}  // namespace hal
