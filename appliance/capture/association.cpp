@@ -1,0 +1,27 @@
+#include "appliance/capture/association.h"
+
+namespace appliance {
+namespace {
+
+// A frame is looked for among this many newest triggers: more than a frame's whole way
+// (exposure, transfer, resends) can take.
+constexpr std::uint64_t kReach = 32;
+
+}  // namespace
+
+std::optional<std::uint64_t> Association::triggerOf(rt::Timestamp first_packet,
+                                                    const EdgeBoard& edges) const RT_SAFE {
+  const rt::Timestamp fired = first_packet - camera_delay_;
+  const std::uint64_t newest = edges.newest();
+  for (std::uint64_t back = 0; back < kReach && back < newest; ++back) {
+    const std::uint64_t trigger = newest - back;
+    const rt::Timestamp edge = edges.edge(trigger);
+    if (edge == rt::Timestamp{}) return std::nullopt;
+    // Exactly between two edges is nobody's.
+    if (2 * std::chrono::abs(fired - edge) < period_) return trigger;
+    if (edge < fired) return std::nullopt;  // older edges are only further away
+  }
+  return std::nullopt;
+}
+
+}  // namespace appliance

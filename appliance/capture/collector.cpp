@@ -1,0 +1,71 @@
+#include "appliance/capture/collector.h"
+
+#include "rt/section.h"
+
+namespace appliance {
+namespace {
+
+/// A counter with a single writer needs no read-modify-write.
+void count(std::atomic<std::uint64_t>& counter, std::uint64_t more = 1) RT_SAFE {
+  counter.store(counter.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+std::uint64_t Collector::triggerOf(const hal::FrameArrival& arrival) RT_SAFE {
+  if (arrival.status != hal::FrameStatus::kComplete) {
+    // The end of a stream cuts a frame short; that is nobody's loss.
+    if (arrival.status != hal::FrameStatus::kAborted) count(incomplete_);
+    return 0;
+  }
+  const auto trigger = association_.triggerOf(arrival.first_packet, board_.edges);
+  if (!trigger || *trigger <= frames_.newest()) {
+    count(unattributed_);
+    return 0;
+  }
+  return *trigger;
+}
+
+std::uint32_t Collector::onFrame(const hal::FrameArrival& arrival) RT_SAFE {
+  const rt::ScopedRtSection rt_section;
+  const std::uint64_t trigger = triggerOf(arrival);
+
+  std::uint32_t next = arrival.slot;  // a frame that is not stored is filled over
+  if (trigger != 0) {
+    count(missing_, trigger - frames_.newest() - 1);
+    next = frames_.store(arrival.slot, {.trigger = trigger,
+                                        .frame_id = arrival.frame_id,
+                                        .first_packet = arrival.first_packet,
+                                        .last_packet = arrival.last_packet});
+  }
+  const rt::Timestamp frame_ready = rt::now();
+  if (trigger != 0) {
+    count(stored_);
+    last_stored_ns_.store(rt::toNs(frame_ready), std::memory_order_relaxed);
+    if (board_.shown_camera.load(std::memory_order_relaxed) == camera_) board_.frame_ready.ring();
+  }
+
+  if (trace_ != nullptr) {
+    trace_->record(FrameRecord{.camera = camera_,
+                               .status = arrival.status,
+                               .trigger = trigger,
+                               .frame_id = arrival.frame_id,
+                               .first_packet = arrival.first_packet,
+                               .last_packet = arrival.last_packet,
+                               .frame_ready = trigger != 0 ? frame_ready : rt::Timestamp{}});
+  }
+  if (trigger != 0 && board_.sets.arrived(trigger) && trace_ != nullptr) {
+    trace_->record(SetRecord{.trigger = trigger, .set_complete = rt::now()});
+  }
+  return next;
+}
+
+CollectorCounts Collector::counts() const RT_SAFE {
+  return {.stored = stored_.load(std::memory_order_relaxed),
+          .missing = missing_.load(std::memory_order_relaxed),
+          .incomplete = incomplete_.load(std::memory_order_relaxed),
+          .unattributed = unattributed_.load(std::memory_order_relaxed),
+          .last_stored = rt::fromNs(last_stored_ns_.load(std::memory_order_relaxed))};
+}
+
+}  // namespace appliance

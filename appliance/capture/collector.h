@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "appliance/capture/association.h"
+#include "appliance/capture/edge_board.h"
+#include "appliance/capture/frame_history.h"
+#include "appliance/capture/frame_set.h"
+#include "appliance/trace/trace_writer.h"
+#include "hal/camera.h"
+#include "rt/doorbell.h"
+
+namespace appliance {
+
+/// What every collector of a rig shares.
+struct CaptureBoard {
+  explicit CaptureBoard(std::uint32_t cameras) : sets(cameras) {}
+
+  EdgeBoard edges;
+  FrameSetBoard sets;
+  std::atomic<std::uint32_t> shown_camera{0};  ///< whose frames ring the bell; by the render thread
+  rt::Doorbell frame_ready;                    ///< wakes the render thread
+};
+
+/// What one camera delivered so far. Every frame that came is in exactly one of
+/// stored, incomplete and unattributed.
+struct CollectorCounts {
+  std::uint64_t stored = 0;
+  std::uint64_t missing = 0;     ///< triggers overtaken without a stored frame, whatever the reason
+  std::uint64_t incomplete = 0;  ///< packets missing after all resends, or a wrong size
+  std::uint64_t unattributed = 0;  ///< no trigger edge near enough, or a trigger that has its frame
+  rt::Timestamp last_stored;
+};
+
+/// Takes one camera's frames: names the trigger of each, stores it in the history, counts what
+/// cannot be stored.
+///
+/// Threads  onFrame(): the camera's receive thread. counts(): any thread.
+/// RT       onFrame() is wait-free but for one futex wake, when its camera is the shown one.
+class Collector final : public hal::FrameSink {
+ public:
+  Collector(std::uint32_t camera, Association association, CameraFrames& frames,
+            CaptureBoard& board, TraceProducer* trace)
+      : camera_(camera), association_(association), frames_(frames), board_(board), trace_(trace) {}
+
+  [[nodiscard]] std::uint32_t onFrame(const hal::FrameArrival& arrival) RT_SAFE override;
+
+  [[nodiscard]] CollectorCounts counts() const RT_SAFE;
+
+ private:
+  [[nodiscard]] std::uint64_t triggerOf(const hal::FrameArrival& arrival) RT_SAFE;
+
+  const std::uint32_t camera_;
+  const Association association_;
+  CameraFrames& frames_;
+  CaptureBoard& board_;
+  TraceProducer* trace_;  // none: not traced
+
+  // Written by the receive thread alone.
+  std::atomic<std::uint64_t> stored_{0};
+  std::atomic<std::uint64_t> missing_{0};
+  std::atomic<std::uint64_t> incomplete_{0};
+  std::atomic<std::uint64_t> unattributed_{0};
+  std::atomic<std::int64_t> last_stored_ns_{0};
+};
+
+}  // namespace appliance
