@@ -14,6 +14,8 @@ struct TargetPoint {
   double y_m = 0;
   double z_m = 0;
 
+  friend bool operator==(const TargetPoint&, const TargetPoint&) = default;
+
   [[nodiscard]] Eigen::Vector3d vector() const { return {x_m, y_m, z_m}; }
 };
 

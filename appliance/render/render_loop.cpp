@@ -1,0 +1,136 @@
+#include "appliance/render/render_loop.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "appliance/director/status_line.h"
+#include "appliance/geometry/warp_planner.h"
+
+namespace appliance {
+namespace {
+
+hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
+                          hal::PixelFormat format) {
+  return {.pixels = frame.pixels,
+          .width_px = camera.width_px,
+          .height_px = camera.height_px,
+          .format = format};
+}
+
+}  // namespace
+
+RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& parameters)
+    : parts_(parts),
+      parameters_(parameters),
+      view_{.width_px = parts.display.mode().width_px,
+            .height_px = parts.display.mode().height_px,
+            .zoom = parameters.zoom},
+      stored_(parts.history, parts.board.edges),
+      director_(parameters.director),
+      views_(parts.rig.cameras.size()) {}
+
+void RenderLoop::run(const std::stop_token& stop) noexcept {
+  while (!stop.stop_requested()) {
+    // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
+    (void)parts_.board.frame_ready.waitUntil(rt::now() + parameters_.trigger_period);
+    turn();
+  }
+}
+
+void RenderLoop::turn() noexcept {
+  const rt::Timestamp wake = rt::now();
+  takeCommands();
+  Wanted wanted;
+  wanted.shot = director_.tick(wake, parameters_.trigger_period, stored_,
+                               std::span(commands_).first(command_count_));
+  command_count_ = 0;
+  wanted.line = statusLine(wanted.shot, parts_.history.cameras());
+  wanted.target_point_begin = rt::now();
+  wanted.target = parts_.target.at(parts_.board.edges.edge(wanted.shot.trigger));
+  wanted.target_point_end = rt::now();
+  parts_.board.shown_camera.store(wanted.shot.camera_shown, std::memory_order_relaxed);
+
+  if (!onScreen(wanted) && show(wanted, wake)) {
+    on_screen_ = wanted;
+    first_command_ = {};
+  }
+  recordFlips();
+  counters_.shot = wanted.shot;
+  status_.publish(counters_);
+}
+
+void RenderLoop::takeCommands() noexcept {
+  for (CommandQueue* queue : {&panel_commands_, &control_commands_}) {
+    while (command_count_ < commands_.size()) {
+      const auto event = queue->tryPop();
+      if (!event) break;
+      commands_[command_count_++] = event->command;
+      if (first_command_ == rt::Timestamp{}) first_command_ = event->at;
+    }
+  }
+}
+
+bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
+  return picture_id_ != 0 && first_command_ == rt::Timestamp{} &&
+         wanted.shot.trigger == on_screen_.shot.trigger &&
+         wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
+         wanted.line.view() == on_screen_.line.view() && wanted.target == on_screen_.target;
+}
+
+bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
+  const Shot& shot = wanted.shot;
+  PictureRecord record{.picture_id = picture_id_ + 1,
+                       .mode = shot.mode,
+                       .substitute = shot.substitute != Substitute::kNone,
+                       .camera_wanted = shot.camera_wanted,
+                       .camera_shown = shot.camera_shown,
+                       .trigger = shot.trigger,
+                       .wake = wake,
+                       .button_event = first_command_};
+
+  std::optional<PinnedFrame> frame;
+  std::optional<hal::WarpPlan> plan;
+  if (shot.trigger != 0) {
+    frame = parts_.history.camera(shot.camera_shown).tryPin(shot.trigger);
+    if (!frame) return false;  // overtaken since the decision; the next turn decides anew
+
+    record.target_point_begin = wanted.target_point_begin;
+    record.target_point_end = wanted.target_point_end;
+    record.homographies_begin = rt::now();
+    computeViews(parts_.rig, wanted.target.vector(), view_, views_);
+    record.homographies_end = rt::now();
+    const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];
+    plan = planWarp(camera, views_[shot.camera_shown],
+                    sourceOf(*frame, camera, parameters_.pixel_format));
+  }
+
+  const auto drawn = parts_.display.render(plan ? &*plan : nullptr, wanted.line);
+  const auto commit = drawn ? parts_.display.commit(record.picture_id)
+                            : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));
+  if (!commit) {
+    ++counters_.skipped;
+    return false;
+  }
+  ++counters_.pictures;
+  picture_id_ = record.picture_id;
+  record.warp_submit = drawn->warp_submit;
+  record.upload_end = drawn->upload_end;
+  record.warp_end = drawn->warp_end;
+  record.commit = *commit;
+  if (parts_.trace != nullptr) parts_.trace->record(record);
+  if (parts_.observer != nullptr) {
+    parts_.observer->onPicture({.record = record, .plan = plan ? &*plan : nullptr});
+  }
+  return true;
+}
+
+void RenderLoop::recordFlips() noexcept {
+  while (const auto flip = parts_.display.tryPopFlip()) {
+    if (parts_.trace == nullptr) continue;
+    parts_.trace->record(FlipRecord{
+        .picture_id = flip->picture_id, .page_flip = flip->page_flip, .vblank = flip->vblank});
+  }
+}
+
+}  // namespace appliance

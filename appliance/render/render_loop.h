@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+#include "appliance/capture/collector.h"
+#include "appliance/capture/frame_history.h"
+#include "appliance/director/director.h"
+#include "appliance/geometry/homography.h"
+#include "appliance/geometry/rig.h"
+#include "appliance/geometry/target_track.h"
+#include "appliance/render/command_queue.h"
+#include "appliance/render/history_views.h"
+#include "appliance/trace/trace_writer.h"
+#include "hal/display.h"
+#include "rt/latest_value.h"
+
+namespace appliance {
+
+/// One picture that was just handed to the display.
+struct ShownPicture {
+  const PictureRecord& record;
+  const hal::WarpPlan* plan;  ///< none: an empty picture
+};
+
+/// Somebody who looks at every picture, a recorder say.
+class PictureObserver {
+ public:
+  virtual ~PictureObserver() = default;
+  /// On the render thread, after the commit: its time is the next picture's.
+  virtual void onPicture(const ShownPicture& picture) noexcept = 0;
+};
+
+/// What the render thread tells about itself.
+struct RenderStatus {
+  Shot shot;
+  std::uint64_t pictures = 0;
+  std::uint64_t skipped = 0;  ///< pictures that the display was not ready for
+};
+
+/// Everything the render loop works with; all outlives it.
+struct RenderParts {
+  const Rig& rig;
+  FrameHistory& history;
+  CaptureBoard& board;
+  TargetTrack& target;
+  hal::Display& display;
+  TraceProducer* trace;       ///< none: not traced
+  PictureObserver* observer;  ///< none: nobody looks
+};
+
+struct RenderParameters {
+  rt::Nanoseconds trigger_period;
+  double zoom = 1;
+  hal::PixelFormat pixel_format = hal::PixelFormat::kBayerRG8;
+  DirectorParameters director;
+};
+
+/// Shows the picture that the director decides on, whenever the shown camera has a new frame or
+/// somebody gave a command.
+///
+/// Threads  run(): the `render` thread. status(): one reader.
+/// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
+///          monitored, not RT safe. It pins at most one frame at a time.
+class RenderLoop {
+ public:
+  RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
+
+  void run(const std::stop_token& stop) noexcept;
+
+  /// Where the panel's and the control interface's threads put their commands; ring
+  /// CaptureBoard::frame_ready afterwards.
+  [[nodiscard]] CommandQueue& panelCommands() { return panel_commands_; }
+  [[nodiscard]] CommandQueue& controlCommands() { return control_commands_; }
+
+  [[nodiscard]] RenderStatus status() { return status_.latest(); }
+
+ private:
+  struct Wanted {
+    Shot shot;
+    hal::StatusLine line;
+    TargetPoint target;
+    rt::Timestamp target_point_begin;
+    rt::Timestamp target_point_end;
+  };
+
+  void turn() noexcept;
+  void takeCommands() noexcept;
+  [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
+  [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
+  void recordFlips() noexcept;
+
+  const RenderParts parts_;
+  const RenderParameters parameters_;
+  const ViewParameters view_;
+  HistoryViews stored_;
+  Director director_;
+  CommandQueue panel_commands_;
+  CommandQueue control_commands_;
+  std::vector<View> views_;  // of every camera
+
+  // Since the last picture.
+  std::array<Command, kMostCommands> commands_{};
+  std::size_t command_count_ = 0;
+  rt::Timestamp first_command_;  // when the oldest of them was given; the epoch: none
+
+  Wanted on_screen_;
+  std::uint64_t picture_id_ = 0;
+  RenderStatus counters_;
+  rt::LatestValue<RenderStatus> status_;
+};
+
+}  // namespace appliance
