@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <expected>
+#include <string>
+
+#include "appliance/control/bus.h"
+
+namespace appliance {
+
+/// The far side of the control interface, for the command line.
+///
+/// Threads  One.
+/// RT       Blocks, up to D-Bus's own timeout.
+/// Errors   One line: no bus, no daemon (and how to start it), or what the daemon refused.
+class ControlClient {
+ public:
+  [[nodiscard]] static std::expected<ControlClient, std::string> open(const std::string& bus,
+                                                                      const std::string& name);
+
+  using Answer = std::expected<void, std::string>;
+  [[nodiscard]] Answer setMode(const std::string& mode);
+  [[nodiscard]] Answer setDelay(std::uint32_t delay_ms);
+  [[nodiscard]] Answer setView(std::uint32_t view);  ///< from 1
+  [[nodiscard]] Answer setTarget(const std::array<double, 3>& target_m);
+  [[nodiscard]] Answer freeze();
+  [[nodiscard]] Answer sweep();
+  /// The JSON of appliance::toJson(Status).
+  [[nodiscard]] std::expected<std::string, std::string> status();
+
+ private:
+  ControlClient(Bus bus, std::string bus_name, std::string name);
+  template <class... Arguments>
+  std::expected<std::string, std::string> call(const char* method, const char* types,
+                                               Arguments... arguments);
+
+  Bus bus_;
+  std::string bus_name_;
+  std::string name_;
+};
+
+}  // namespace appliance

@@ -1,0 +1,61 @@
+#include "appliance/control/control_requests.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace appliance {
+namespace {
+
+using Kind = Command::Kind;
+
+constexpr double kFarthestTargetMetres = 1000;  // beyond any hall; a slip of the decimal point
+
+}  // namespace
+
+Requested requestMode(std::string_view mode, const Status& now) {
+  if (mode == "live") return Command{Kind::kGoLive};
+  if (mode == "frozen") {
+    if (now.mode == Mode::kFrozen) return std::nullopt;
+    return Command{Kind::kFreezeToggle};
+  }
+  if (mode == "sweep") {
+    if (now.mode == Mode::kSweep) return std::nullopt;
+    return Command{Kind::kSweep};
+  }
+  if (mode == "delayed")
+    return std::unexpected("mode delayed is entered by its delay: set a delay in milliseconds");
+  return std::unexpected("unknown mode \"" + std::string(mode) +
+                         "\": the modes are live, delayed, frozen and sweep");
+}
+
+Requested requestDelay(std::uint32_t delay_ms, const Status& now) {
+  if (delay_ms > now.history_ms)
+    return std::unexpected("a delay of " + std::to_string(delay_ms) +
+                           " ms is longer than the stored " + std::to_string(now.history_ms) +
+                           " ms");
+  return Command{.kind = Kind::kSetDelay, .delay = std::chrono::milliseconds(delay_ms)};
+}
+
+Requested requestView(std::uint32_t view, const Status& now) {
+  if (view < 1 || view > now.cameras.size())
+    return std::unexpected("there is no view " + std::to_string(view) + ": the views are 1 to " +
+                           std::to_string(now.cameras.size()));
+  return Command{.kind = Kind::kSetView, .camera = view - 1};
+}
+
+std::expected<std::array<double, 3>, std::string> requestTarget(double x_m, double y_m,
+                                                                double z_m) {
+  const std::array<double, 3> target_m{x_m, y_m, z_m};
+  for (const double coordinate : target_m) {
+    if (std::isfinite(coordinate) && std::abs(coordinate) <= kFarthestTargetMetres) continue;
+    std::array<char, 120> message{};
+    (void)std::snprintf(message.data(), message.size(),
+                        "the target (%g, %g, %g) is not three coordinates in metres within %g m",
+                        x_m, y_m, z_m, kFarthestTargetMetres);
+    return std::unexpected(message.data());
+  }
+  return target_m;
+}
+
+}  // namespace appliance

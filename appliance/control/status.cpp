@@ -1,0 +1,39 @@
+#include "appliance/control/status.h"
+
+#include <nlohmann/json.hpp>
+
+#include "appliance/trace/trace_file.h"
+
+namespace appliance {
+
+std::string_view nameOf(CameraState state) {
+  constexpr std::array<std::string_view, 3> kNames = {"starting", "streaming", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+std::string toJson(const Status& status) {
+  nlohmann::ordered_json object = {
+      {"mode", nameOf(status.mode)},
+      {"view_wanted", status.view_wanted + 1},
+      {"view_shown", status.view_shown + 1},
+      {"delay_ms", status.delay_ms},
+      {"history_ms", status.history_ms},
+      {"target_m", status.target_m},
+      {"shown_hz", status.shown_hz},
+      {"triggers", status.triggers},
+      {"frames_lost", status.frames_lost},
+      {"frames_incomplete", status.frames_incomplete},
+      {"cameras", nlohmann::ordered_json::array()},
+      {"degraded", status.degraded},
+      {"renderer", status.renderer},
+  };
+  for (const CameraStatus& camera : status.cameras) {
+    object["cameras"].push_back({{"name", camera.name},
+                                 {"state", nameOf(camera.state)},
+                                 {"frames_lost", camera.frames_lost},
+                                 {"frames_incomplete", camera.frames_incomplete}});
+  }
+  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace appliance

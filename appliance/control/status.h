@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "appliance/director/command.h"
+#include "appliance/director/shot.h"
+
+namespace appliance {
+
+enum class CameraState : std::uint8_t {
+  kStarting,   ///< not yet configured and streaming
+  kStreaming,  ///< frames arrive
+  kLost,       ///< frames should arrive and do not
+};
+
+struct CameraStatus {
+  std::string name;  ///< as in the rig file
+  CameraState state = CameraState::kStarting;
+  std::uint64_t frames_lost = 0;
+  std::uint64_t frames_incomplete = 0;
+};
+
+/// The running daemon in one look. Views count from 0 here, from 1 for people and on the bus.
+/// Texts are UTF-8: D-Bus refuses others.
+struct Status {
+  Mode mode = Mode::kLive;
+  std::uint32_t view_wanted = 0;
+  std::uint32_t view_shown = 0;
+  std::uint32_t delay_ms = 0;
+  std::uint32_t history_ms = 0;  ///< how far back the stored moments reach
+  std::array<double, 3> target_m{};
+  double shown_hz = 0;  ///< distinct frame sets a second
+  std::uint64_t triggers = 0;
+  std::uint64_t frames_lost = 0;
+  std::uint64_t frames_incomplete = 0;
+  std::vector<CameraStatus> cameras;
+  std::vector<std::string> degraded;  ///< one line per thing that is less than configured
+  std::string renderer;
+};
+
+[[nodiscard]] std::string_view nameOf(CameraState state);
+
+/// One JSON object with the names of the fields above; views from 1.
+[[nodiscard]] std::string toJson(const Status& status);
+
+/// Where the control interface looks.
+///
+/// Threads  status(): the thread that serves the control interface.
+class StatusSource {
+ public:
+  virtual ~StatusSource() = default;
+  [[nodiscard]] virtual Status status() const = 0;
+};
+
+/// Where the control interface puts what was asked for; everything given is valid.
+///
+/// Threads  The thread that serves the control interface.
+/// Errors   false: not taken, because too much waits already.
+class ControlSink {
+ public:
+  virtual ~ControlSink() = default;
+  [[nodiscard]] virtual bool command(const Command& command) = 0;
+  /// Rig frame, metres; finite.
+  [[nodiscard]] virtual bool setTarget(const std::array<double, 3>& target_m) = 0;
+};
+
+}  // namespace appliance
