@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "appliance/director/shot.h"
 #include "hal/camera.h"
 #include "rt/clock.h"
 
@@ -13,8 +14,6 @@
 /// docs/trace.md describes the file; the field names there are these names plus `_ns` for instants.
 /// An instant of zero did not happen. Cameras count from 0, triggers and pictures from 1.
 namespace appliance {
-
-enum class PictureMode : std::uint8_t { kLive, kDelayed, kFrozen, kSweep };
 
 /// One pulse of the trigger line, by the trigger loop.
 struct TriggerRecord {
@@ -44,7 +43,7 @@ struct SetRecord {
 /// One picture that was handed to the display, by the render thread.
 struct PictureRecord {
   std::uint64_t picture_id = 0;
-  PictureMode mode = PictureMode::kLive;
+  Mode mode = Mode::kLive;
   bool substitute = false;  ///< a neighbour of camera_wanted is shown instead
   std::uint32_t camera_wanted = 0;
   std::uint32_t camera_shown = 0;

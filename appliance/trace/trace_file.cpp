@@ -43,7 +43,7 @@ class LineAppender {
 
   void operator()(const char* name, rt::Timestamp instant) { number(name, rt::toNs(instant)); }
   void operator()(const char* name, bool value) { key(name).append(value ? "true" : "false"); }
-  void operator()(const char* name, PictureMode mode) { word(name, nameOf(mode)); }
+  void operator()(const char* name, Mode mode) { word(name, nameOf(mode)); }
   void operator()(const char* name, hal::FrameStatus status) { word(name, nameOf(status)); }
   void operator()(const char* name, std::unsigned_integral auto value) { number(name, value); }
 
@@ -132,7 +132,7 @@ struct JsonReader {
     to = rt::fromNs(t_ns);
     return true;
   }
-  static bool take(const json& from, PictureMode& to) { return takeName(from, kModeNames, to); }
+  static bool take(const json& from, Mode& to) { return takeName(from, kModeNames, to); }
   static bool take(const json& from, hal::FrameStatus& to) {
     return takeName(from, kStatusNames, to);
   }
@@ -199,7 +199,7 @@ std::string takeLine(const std::string& line, bool first, Trace& trace) {
 
 }  // namespace
 
-std::string_view nameOf(PictureMode mode) {
+std::string_view nameOf(Mode mode) {
   return kModeNames[static_cast<std::size_t>(mode)];
 }
 

@@ -39,7 +39,7 @@ void appendLine(std::string& text, const TraceRecord& record);
                                                           const std::string& name);
 [[nodiscard]] std::expected<Trace, std::string> readTraceFile(const std::string& path);
 
-[[nodiscard]] std::string_view nameOf(PictureMode mode);
+[[nodiscard]] std::string_view nameOf(Mode mode);
 [[nodiscard]] std::string_view nameOf(hal::FrameStatus status);
 
 }  // namespace appliance
