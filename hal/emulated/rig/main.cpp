@@ -1,0 +1,128 @@
+/// kagami-emulator: the far side of the camera and trigger wires on a machine without them.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "hal/emulated/rig/rig.h"
+#include "hal/emulated/rig/rig_file.h"
+#include "hal/emulated/rig/run_record.h"
+#include "hal/emulated/rig/socket.h"
+#include "hal/emulated/rig/stamp_scene.h"
+#include "hal/emulated/rig/stop_signals.h"
+
+namespace {
+
+struct Arguments {
+  std::uint32_t cameras = 20;
+  std::string size = "1280x1024";
+  std::string scene = "stamp";
+  std::string first_address = "127.0.0.1";
+  double link_gbps = 1;
+  double seconds = 0;
+  std::string stats;
+  std::string rig_out;
+  emulator::RigOptions rig;
+};
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "kagami-emulator: %s\n", message.c_str());
+  return 1;
+}
+
+std::expected<emulator::SizePx, std::string> parseSize(const std::string& text) {
+  unsigned width = 0;
+  unsigned height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width % 4 != 0 ||
+      height % 2 != 0 || width > 16384 || height > 16384) {
+    return std::unexpected("--size " + text +
+                           ": say WIDTHxHEIGHT with a width that 4 divides, an even height and "
+                           "no side over 16384");
+  }
+  return emulator::SizePx{width, height};
+}
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("--cameras", a.cameras, "cameras in the stamp scene")
+      ->check(CLI::Range(1, 250))
+      ->capture_default_str();
+  app.add_option("--size", a.size, "their size in pixels")->capture_default_str();
+  app.add_option("--scene", a.scene, "what they see: stamp")->capture_default_str();
+  app.add_option("--first-address", a.first_address, "camera i answers on this address + i")
+      ->capture_default_str();
+  app.add_option("--wire-port", a.rig.wire_port, "UDP port of the trigger wire on 127.0.0.1")
+      ->check(CLI::Range(1, 65535))
+      ->capture_default_str();
+  app.add_option("--link-gbps", a.link_gbps, "speed of each camera's link")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  app.add_option("--mtu", a.rig.max_packet_bytes, "largest packet size a client may set")
+      ->check(CLI::Range(576, 16000))
+      ->capture_default_str();
+  app.add_option("--wire-log", a.rig.wire_log, "CSV file: the instants of every frame sent");
+  app.add_option("--stats", a.stats, "JSON file at exit: counts, lateness, validity");
+  app.add_option("--rig-out", a.rig_out, "write the stamp scene's rig.toml there");
+  app.add_option("--realtime-priority", a.rig.realtime_priority, "SCHED_FIFO priority; 0: none")
+      ->check(CLI::Range(0, 99))
+      ->capture_default_str();
+  app.add_option("--internal-trigger-hz", a.rig.internal_trigger_hz,
+                 "fire Line1 from inside at this rate; 0: from the wire only")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--seconds", a.seconds, "stop after this time; 0: run until stopped")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--loss", a.rig.loss, "probability that a stream packet is lost")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--seed", a.rig.seed, "of the losses")->capture_default_str();
+}
+
+int run(Arguments& a) {
+  const auto address = emulator::parseAddress(a.first_address);
+  if (!address) return fail("--first-address " + address.error());
+  a.rig.first_address = *address;
+  a.rig.link_bits_per_second = a.link_gbps * 1e9;
+  if (a.seconds > 0) {
+    a.rig.run_for = rt::Nanoseconds{static_cast<std::int64_t>(a.seconds * 1e9)};
+  }
+  const auto size = parseSize(a.size);
+  if (!size) return fail(size.error());
+  auto scene = emulator::StampScene::make(a.cameras, *size);
+  if (!scene) return fail(scene.error());
+  if (!a.rig_out.empty()) {
+    if (auto written = emulator::writeRigFile(a.rig_out, scene->rig()); !written) {
+      return fail(written.error());
+    }
+  }
+  auto rig = emulator::Rig::open(*scene, a.rig);
+  if (!rig) return fail(rig.error());
+  std::puts("ready");
+  std::fflush(stdout);
+  if (auto served = rig->run(); !served) return fail(served.error());
+
+  const auto reason =
+      emulator::invalidReason(rig->counters(), rig->lateness(), rig->triggerPeriod());
+  if (!reason.empty()) std::fprintf(stderr, "kagami-emulator: run INVALID: %s\n", reason.c_str());
+  if (!a.stats.empty()) {
+    if (auto written = emulator::writeStatistics(a.stats, scene->cameraCount(), rig->counters(),
+                                                 rig->lateness(), rig->triggerPeriod());
+        !written) {
+      return fail(written.error());
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  emulator::blockStopSignals();
+  CLI::App app("Emulates GigE Vision cameras and the wire that triggers them.");
+  Arguments arguments;
+  declare(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  return run(arguments);
+}

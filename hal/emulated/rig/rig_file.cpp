@@ -1,0 +1,108 @@
+#include "hal/emulated/rig/rig_file.h"
+
+#include <fstream>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+namespace emulator {
+namespace {
+
+constexpr std::int64_t kFormat = 1;
+constexpr std::int64_t kLargestSidePx = 16'384;
+
+template <std::size_t N>
+std::string list(const std::array<double, N>& values) {
+  std::ostringstream text;
+  text.precision(12);
+  text << std::showpoint << '[';
+  for (std::size_t i = 0; i < N; ++i) text << (i == 0 ? "" : ", ") << values[i];
+  text << ']';
+  return text.str();
+}
+
+std::string place(const std::filesystem::path& path, const toml::node& node) {
+  return path.string() + ":" + std::to_string(node.source().begin.line) + ": ";
+}
+
+std::expected<CameraModel, std::string> readCamera(const std::filesystem::path& path,
+                                                   const toml::table& table) {
+  CameraModel camera;
+  camera.name = table["name"].value_or(std::string());
+  if (camera.name.empty()) {
+    return std::unexpected(place(path, table) + "a [[camera]] needs name = \"...\"");
+  }
+  const auto* size = table["image_size_px"].as_array();
+  const bool two = size != nullptr && size->size() == 2;
+  const std::int64_t width = two ? (*size)[0].value_or(std::int64_t{0}) : 0;
+  const std::int64_t height = two ? (*size)[1].value_or(std::int64_t{0}) : 0;
+  if (width <= 0 || height <= 0 || width > kLargestSidePx || height > kLargestSidePx) {
+    return std::unexpected(place(path, table) + "camera \"" + camera.name +
+                           "\" needs image_size_px = [width, height], whole numbers");
+  }
+  camera.image_size = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+  return camera;
+}
+
+}  // namespace
+
+std::string toToml(const RigModel& rig) {
+  std::ostringstream text;
+  text << "format = " << kFormat << "\nname = \"" << rig.name << "\"\n"
+       << "target_m = " << list(rig.target_m) << "\n";
+  for (const CameraModel& c : rig.cameras) {
+    text << "\n[[camera]]\nname = \"" << c.name << "\"\n"
+         << "image_size_px = [" << c.image_size.width << ", " << c.image_size.height << "]\n"
+         << "focal_px = " << list(c.focal_px) << "\n"
+         << "centre_px = " << list(c.centre_px) << "\n"
+         << "distortion = " << list(c.distortion) << "\n"
+         << "T_cam_rig = [";
+    for (std::size_t row = 0; row < 3; ++row) {
+      const auto& r = c.rotation[row];
+      text << (row == 0 ? "" : ",\n             ")
+           << list(std::array{r[0], r[1], r[2], c.translation_m[row]});
+    }
+    text << "]\ngain_rgb = [1.0, 1.0, 1.0]\n";
+  }
+  return text.str();
+}
+
+std::expected<void, std::string> writeRigFile(const std::filesystem::path& path,
+                                              const RigModel& rig) {
+  std::ofstream file(path);
+  file << toToml(rig);
+  file.flush();
+  if (!file) return std::unexpected("cannot write " + path.string());
+  return {};
+}
+
+std::expected<RigModel, std::string> readRigFile(const std::filesystem::path& path) {
+  toml::table root;
+  try {
+    root = toml::parse_file(path.string());
+  } catch (const toml::parse_error& error) {
+    return std::unexpected(path.string() + ":" + std::to_string(error.source().begin.line) + ": " +
+                           std::string(error.description()));
+  }
+  if (root["format"].value<std::int64_t>() != kFormat) {
+    return std::unexpected(path.string() + ": format = 1 is missing: not a rig this version reads");
+  }
+  RigModel rig;
+  rig.name = root["name"].value_or(std::string());
+  const auto* cameras = root["camera"].as_array();
+  if (cameras == nullptr || cameras->empty()) {
+    return std::unexpected(path.string() + ": there is no [[camera]]");
+  }
+  for (const toml::node& node : *cameras) {
+    const auto* table = node.as_table();
+    if (table == nullptr) {
+      return std::unexpected(place(path, node) + "camera must be a list of tables, [[camera]]");
+    }
+    auto camera = readCamera(path, *table);
+    if (!camera) return std::unexpected(camera.error());
+    rig.cameras.push_back(std::move(*camera));
+  }
+  return rig;
+}
+
+}  // namespace emulator

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <expected>
+#include <string>
+#include <vector>
+
+#include "hal/emulated/rig/rig_file.h"
+#include "hal/emulated/rig/scene.h"
+#include "hal/emulated/rig/stamp_card.h"
+
+namespace emulator {
+
+/// A training hall with a mannequin, seen by a rig of arc cameras; every frame carries a card
+/// with its camera and trigger. The hall is drawn once; a frame costs only its card.
+/// Memory   Per camera one picture, and kFrameHistory times the band of rows with the card.
+class StampScene final : public Scene {
+ public:
+  /// Refuses sizes that cannot hold the card.
+  [[nodiscard]] static std::expected<StampScene, std::string> make(std::uint32_t cameras,
+                                                                   SizePx size);
+
+  [[nodiscard]] const RigModel& rig() const { return rig_; }
+  [[nodiscard]] std::uint32_t cameraCount() const override;
+  [[nodiscard]] SizePx sensorSize(std::uint32_t camera) const override;
+  [[nodiscard]] std::string cameraName(std::uint32_t camera) const override;
+  [[nodiscard]] gvsp::Picture expose(std::uint32_t camera, std::uint64_t trigger,
+                                     std::uint32_t slot) override;
+
+ private:
+  struct View {
+    std::vector<std::uint8_t> hall;
+    std::array<std::vector<std::uint8_t>, kFrameHistory> bands;
+  };
+
+  StampScene(RigModel rig, SizePx size);
+
+  RigModel rig_;
+  SizePx size_;
+  StampLayout layout_;
+  StampCard card_;
+  std::vector<View> views_;
+};
+
+}  // namespace emulator
