@@ -45,7 +45,7 @@ std::expected<std::unique_ptr<OffscreenDisplay>, std::string> OffscreenDisplay::
   auto renderer = Renderer::create(config.renderer);
   if (!renderer) return std::unexpected(renderer.error());
   std::unique_ptr<OffscreenDisplay> display(new OffscreenDisplay(config, std::move(*renderer)));
-  display->releaseContext();
+  display->detach();
   return display;
 }
 
@@ -94,12 +94,6 @@ std::optional<hal::PageFlip> OffscreenDisplay::committedFlip() const {
   return chain_.committedFlip();
 }
 
-void OffscreenDisplay::prepareSmall(std::uint32_t width_px, std::uint32_t height_px) {
-  if (!renderer_->context().bind()) return;
-  small_ = makeRenderTarget(width_px, height_px);
-  renderer_->context().release();
-}
-
 rt::Result<const RenderTarget*> OffscreenDisplay::committedTarget() {
   if (!renderer_->context().bind()) return std::unexpected(contextElsewhere());
   const auto buffer = chain_.committed();
@@ -113,19 +107,6 @@ rt::Result<void> OffscreenDisplay::readPicture(std::span<std::byte> rgba) {
   const auto target = committedTarget();
   if (!target) return std::unexpected(target.error());
   return readTarget(**target, rgba);
-}
-
-rt::Result<void> OffscreenDisplay::readSmall(std::span<std::byte> rgba) {
-  const auto target = committedTarget();
-  if (!target) return std::unexpected(target.error());
-  assert(small_ && "prepareSmall() comes first");
-  const RenderTarget& from = **target;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer.get());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, small_->framebuffer.get());
-  glBlitFramebuffer(0, 0, static_cast<GLint>(from.width_px), static_cast<GLint>(from.height_px), 0,
-                    0, static_cast<GLint>(small_->width_px), static_cast<GLint>(small_->height_px),
-                    GL_COLOR_BUFFER_BIT, GL_LINEAR);
-  return readTarget(*small_, rgba);
 }
 
 }  // namespace ui

@@ -23,7 +23,7 @@ struct OffscreenConfig {
 /// A screen without a screen: the same drawing, buffers and vblanks, kept in memory.
 ///
 /// Threads  create() on a SCHED_OTHER thread; afterwards one caller, the render thread. It calls
-///          releaseContext() before it ends, so that another thread may destroy the display.
+///          detach() before it ends, so that another thread may destroy the display.
 /// Errors   create(): one line: which part of EGL or GL is missing, or what is wrong in @p config.
 class OffscreenDisplay final : public hal::Display, public PictureSource {
  public:
@@ -38,14 +38,12 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t picture_id) override;
   [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override;
 
-  void prepareSmall(std::uint32_t width_px, std::uint32_t height_px) override;
   [[nodiscard]] rt::Result<void> readPicture(std::span<std::byte> rgba) override;
-  [[nodiscard]] rt::Result<void> readSmall(std::span<std::byte> rgba) override;
   [[nodiscard]] std::optional<hal::PageFlip> committedFlip() const override;
 
   /// Why pictures carry no text; empty where they do.
   [[nodiscard]] const std::string& textWarning() const { return renderer_->textWarning(); }
-  void releaseContext() { renderer_->context().release(); }
+  void detach() override { renderer_->context().release(); }
 
  private:
   OffscreenDisplay(const OffscreenConfig& config, std::unique_ptr<Renderer> renderer);
@@ -55,7 +53,6 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   std::unique_ptr<Renderer> renderer_;
   SwapChain chain_;
   std::vector<RenderTarget> targets_;
-  std::optional<RenderTarget> small_;
 };
 
 }  // namespace ui

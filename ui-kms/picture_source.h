@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "hal/display.h"
@@ -15,16 +16,11 @@ class PictureSource {
  public:
   virtual ~PictureSource() = default;
 
-  /// Storage for readSmall(), before the render thread starts.
-  virtual void prepareSmall(std::uint32_t width_px, std::uint32_t height_px) = 0;
-
   /// The last committed picture: RGBA bytes, top row first, 4 * width * height of the mode.
+  /// Whole and unreduced: under a software renderer that is a copy, and cheaper than a reduction.
   [[nodiscard]] virtual rt::Result<void> readPicture(std::span<std::byte> rgba) = 0;
 
-  /// The same, reduced to the size given to prepareSmall().
-  [[nodiscard]] virtual rt::Result<void> readSmall(std::span<std::byte> rgba) = 0;
-
-  /// When that picture comes or came on screen.
+  /// When that picture comes or came on screen, where the display knows it already.
   [[nodiscard]] virtual std::optional<hal::PageFlip> committedFlip() const = 0;
 };
 
