@@ -106,7 +106,7 @@ struct History {
 
   rt::SlotPool pool{kSlots};
   std::array<Payload, kSlots> payloads{};
-  std::array<std::atomic<std::uint64_t>, kDepth> index{};  // tag << 8 | slot
+  std::array<std::atomic<std::uint64_t>, kDepth> index{};  // tag << 8 | slot, relaxed: a mere hint
   std::atomic<std::size_t> readers_done{0};
 
   static std::uint64_t contentOf(std::uint64_t tag) { return tag * 0x9E3779B97F4A7C15U; }
@@ -129,7 +129,7 @@ struct History {
       }
       pool.publish(*slot, tag);
       shown.push_back(*slot);
-      index[tag % kDepth].store((tag << 8) | *slot, std::memory_order_release);
+      index[tag % kDepth].store((tag << 8) | *slot, std::memory_order_relaxed);
       if (tag % 4 == 0) std::this_thread::yield();
     }
     return refused;
@@ -146,7 +146,7 @@ struct History {
     std::deque<std::pair<std::uint64_t, rt::SlotPin>> held;
     for (std::uint64_t looks = 0; looks < kLooksPerReader;) {
       // anything from the newest frame to the one just being overwritten
-      const auto entry = index[random() % kDepth].load(std::memory_order_acquire);
+      const auto entry = index[random() % kDepth].load(std::memory_order_relaxed);
       const std::uint64_t tag = entry >> 8;
       const auto slot = static_cast<std::uint32_t>(entry & 0xFF);
       if (held.size() == kPinsPerReader) {

@@ -1,3 +1,4 @@
+#include <array>
 #include <condition_variable>
 #include <cstdlib>
 #include <memory>
@@ -26,7 +27,7 @@ void expectAbort(const Forbidden& forbidden, const std::string& call) {
 }
 
 TEST(RtSectionDeathTest, AbortsOnEveryWayToAllocate) {
-  expectAbort([] { (void)*std::make_unique<volatile int>(1); }, "malloc");  // operator new
+  expectAbort([] { const auto p = std::make_unique<std::array<volatile int, 9>>(); }, "malloc");
   expectAbort([] { const std::vector<std::string> strings(3, std::string(100, 'x')); }, "malloc");
   expectAbort(
       [] {
