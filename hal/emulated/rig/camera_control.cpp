@@ -80,7 +80,7 @@ Status Camera::execute(const gvcp::Command& command, const ControlChannel::Peer&
             return status;
           },
           [&](const gvcp::PacketResend& c) {
-            if (!control_.mayWrite(peer)) return Status::kAccessDenied;
+            if (!control_.mayAskAgain(peer)) return Status::kAccessDenied;
             resend(c);
             return Status::kSuccess;
           },

@@ -22,6 +22,10 @@ class ControlChannel {
 
   [[nodiscard]] bool mayRead(const Peer& peer) const;
   [[nodiscard]] bool mayWrite(const Peer& peer) const { return controller_ == peer; }
+  /// Packets are asked for again by the controller's machine, often from another port.
+  [[nodiscard]] bool mayAskAgain(const Peer& peer) const {
+    return controller_ && controller_->address == peer.address;
+  }
   [[nodiscard]] bool isHeld() const { return controller_.has_value(); }
   /// What the control privilege register reads.
   [[nodiscard]] std::uint32_t privilege() const { return privilege_; }
