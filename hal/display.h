@@ -89,6 +89,9 @@ class Display {
 
   /// Page flips since the last call, oldest first.
   [[nodiscard]] virtual std::optional<PageFlip> tryPopFlip() = 0;
+
+  /// The caller's last call before another thread calls or destroys the display.
+  virtual void detach() = 0;
 };
 
 }  // namespace hal

@@ -88,15 +88,6 @@ bool isIpv4(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &parsed) == 1;
 }
 
-bool isIpv4WithPort(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || !isIpv4(text.substr(0, colon))) return false;
-  unsigned port = 0;
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data() + colon + 1, end, port);
-  return read.ec == std::errc{} && read.ptr == end && port >= 1 && port <= 65535;
-}
-
 void readCameras(Section section, Config::Cameras& cameras) {
   section.word("backend", cameras.backend);
   section.texts("addresses", cameras.addresses);
@@ -112,7 +103,6 @@ void readCameras(Section section, Config::Cameras& cameras) {
                   {64 * 1024, 256 * 1024 * 1024, "bytes"});
   section.integer("packet_timeout_us", cameras.packet_timeout_us, {100, 1'000'000, "us"});
   section.integer("frame_retention_us", cameras.frame_retention_us, {1000, 1'000'000, "us"});
-  section.number("start_timeout_s", cameras.start_timeout_s, {0.1, 600, "s"});
   section.end();
 
   std::set<std::string> seen;
@@ -128,13 +118,8 @@ void readTrigger(Section section, Config::Trigger& trigger) {
   section.word("backend", trigger.backend);
   section.number("rate_hz", trigger.rate_hz, {0.1, 1000, "Hz"});
   section.number("pulse_width_us", trigger.pulse_width_us, {1, 1e6, "us"});
-  section.word("wire_address", trigger.wire_address);
+  section.integer("wire_port", trigger.wire_port, {1, 65535});
   section.end();
-  if (!isIpv4WithPort(trigger.wire_address))
-    section.fail("wire_address",
-                 "wire_address must be an IPv4 address and a port such as "
-                 "127.0.0.1:3990, not \"" +
-                     trigger.wire_address + "\"");
 }
 
 void readHistory(Section section, Config::History& history) {

@@ -33,7 +33,6 @@ struct Config {
     std::uint32_t socket_buffer_bytes = 4U << 20;
     std::uint32_t packet_timeout_us = 5000;
     std::uint32_t frame_retention_us = 30000;
-    double start_timeout_s = 10;
     bool operator==(const Cameras&) const = default;
   };
 
@@ -41,7 +40,7 @@ struct Config {
     std::string backend = "emulated";
     double rate_hz = 40;
     double pulse_width_us = 100;
-    std::string wire_address = "127.0.0.1:3990";
+    std::uint32_t wire_port = 3990;  ///< of the emulator, on this machine
     bool operator==(const Trigger&) const = default;
   };
 

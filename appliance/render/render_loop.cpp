@@ -36,6 +36,8 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
     (void)parts_.board.frame_ready.waitUntil(rt::now() + parameters_.trigger_period);
     turn();
   }
+  recordFlips();
+  parts_.display.detach();
 }
 
 void RenderLoop::turn() noexcept {
@@ -113,6 +115,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     return false;
   }
   ++counters_.pictures;
+  if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
   picture_id_ = record.picture_id;
   record.warp_submit = drawn->warp_submit;
   record.upload_end = drawn->upload_end;
@@ -123,6 +126,16 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     parts_.observer->onPicture({.record = record, .plan = plan ? &*plan : nullptr});
   }
   return true;
+}
+
+void RenderLoop::countShown(rt::Timestamp commit) noexcept {
+  const rt::Nanoseconds counted = commit - second_begin_;
+  if (counted >= std::chrono::seconds(1)) {
+    counters_.shown_hz = shown_in_second_ * 1e9 / static_cast<double>(counted.count());
+    second_begin_ = commit;
+    shown_in_second_ = 0;
+  }
+  ++shown_in_second_;
 }
 
 void RenderLoop::recordFlips() noexcept {

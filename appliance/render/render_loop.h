@@ -39,6 +39,7 @@ struct RenderStatus {
   Shot shot;
   std::uint64_t pictures = 0;
   std::uint64_t skipped = 0;  ///< pictures that the display was not ready for
+  double shown_hz = 0;  ///< distinct frame sets a second, over the last whole second of pictures
 };
 
 /// Everything the render loop works with; all outlives it.
@@ -91,6 +92,7 @@ class RenderLoop {
   void takeCommands() noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
   [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
+  void countShown(rt::Timestamp commit) noexcept;
   void recordFlips() noexcept;
 
   const RenderParts parts_;
@@ -110,6 +112,8 @@ class RenderLoop {
   Wanted on_screen_;
   std::uint64_t picture_id_ = 0;
   RenderStatus counters_;
+  rt::Timestamp second_begin_;  // of the second that is being counted
+  std::uint32_t shown_in_second_ = 0;
   rt::LatestValue<RenderStatus> status_;
 };
 

@@ -51,9 +51,9 @@ TEST_F(AssociationTest, NamesNobodyBeforeTheFirstEdge) {
 }
 
 TEST_F(AssociationTest, RepairsASlipOfOneTriggerByTimeAlone) {
-  // The camera ignored trigger 50: its next frame is that of 51, whatever its frame id says.
-  EXPECT_EQ(association_.triggerOf(edge(49) + kDelay, *edges_), 49U);
-  EXPECT_EQ(association_.triggerOf(edge(51) + kDelay, *edges_), 51U);
+  // The camera ignored trigger 90: its next frame is that of 91, whatever its frame id says.
+  EXPECT_EQ(association_.triggerOf(edge(89) + kDelay, *edges_), 89U);
+  EXPECT_EQ(association_.triggerOf(edge(91) + kDelay, *edges_), 91U);
 }
 
 }  // namespace

@@ -66,11 +66,10 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "cameras.socket_buffer_bytes=1000000",
                                           "cameras.packet_timeout_us=4000",
                                           "cameras.frame_retention_us=20000",
-                                          "cameras.start_timeout_s=5",
                                           "trigger.backend=x",
                                           "trigger.rate_hz=30",
                                           "trigger.pulse_width_us=50",
-                                          "trigger.wire_address=127.0.0.1:4000",
+                                          "trigger.wire_port=4000",
                                           "history.sets=200",
                                           "history.in_flight=10",
                                           "history.reserve=5",
@@ -138,7 +137,7 @@ TEST(Config, RefusesWrongTypesAndRangesInOneLine) {
   EXPECT_THAT(faultOf("[cameras]\naddresses = [\"cam1\"]"), HasSubstr("not an IPv4 address"));
   EXPECT_THAT(faultOf("[cameras]\naddresses = [\"10.0.0.1\", \"10.0.0.1\"]"),
               HasSubstr("stands twice"));
-  EXPECT_THAT(faultOf("[trigger]\nwire_address = \"127.0.0.1:0\""), HasSubstr("wire_address"));
+  EXPECT_THAT(faultOf("[trigger]\nwire_port = 0"), HasSubstr("wire_port"));
   EXPECT_THAT(faultOf("[director]\ndelay_ladder_s = [2, 1]"), HasSubstr("rising"));
   EXPECT_THAT(faultOf("[director]\ndelay_ladder_s = []"), HasSubstr("one or more"));
   EXPECT_THAT(faultOf("[realtime.render]\npriority = 0"), HasSubstr("priority must be 1 to 99"));

@@ -1,0 +1,403 @@
+#include "appliance/appliance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <utility>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "appliance/capture/liveness.h"
+#include "appliance/panel/panel_controller.h"
+#include "hal/backends.h"
+
+namespace appliance {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Producers of the trace: the two loops, then one per camera.
+constexpr std::size_t kTriggerTrace = 0;
+constexpr std::size_t kRenderTrace = 1;
+constexpr std::size_t kFirstCameraTrace = 2;
+
+constexpr std::uint32_t kFewestSets = 8;
+constexpr rt::Nanoseconds kPanelPoll = std::chrono::milliseconds(20);
+
+rt::Nanoseconds periodOf(double rate_hz) {
+  return rt::Nanoseconds{std::llround(1e9 / rate_hz)};
+}
+
+rt::Nanoseconds microseconds(double us) {
+  return rt::Nanoseconds{std::llround(us * 1e3)};
+}
+
+hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& camera,
+                             const std::string& address) {
+  return {.name = camera.name,
+          .address = address,
+          .width_px = camera.width_px,
+          .height_px = camera.height_px,
+          .pixel_format = config.pixel_format,
+          .exposure_us = config.exposure_us,
+          .gain_db = config.gain_db,
+          .white_balance_rgb = config.white_balance_rgb,
+          .trigger_source = config.trigger_source,
+          .packet_size_bytes = config.packet_size_bytes,
+          .packet_delay_ns = config.packet_delay_ns,
+          .socket_buffer_bytes = config.socket_buffer_bytes,
+          .packet_timeout_us = config.packet_timeout_us,
+          .frame_retention_us = config.frame_retention_us};
+}
+
+rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how) {
+  return {
+      .name = std::move(name), .policy = how.policy, .priority = how.priority, .cpus = how.cpus};
+}
+
+std::string receiveThreadName(std::size_t camera) {
+  char name[16];
+  std::snprintf(name, sizeof name, "recv%02zu", (camera + 1) % 100);
+  return name;
+}
+
+std::vector<TracedThread> tracedThreads() {
+  std::vector<TracedThread> threads;
+  for (const rt::TaskInfo& task : rt::listTasks()) {
+    threads.push_back({.name = task.name,
+                       .policy = task.policy == rt::SchedPolicy::kFifo         ? "fifo"
+                                 : task.policy == rt::SchedPolicy::kRoundRobin ? "rr"
+                                                                               : "other",
+                       .priority = task.priority,
+                       .cpu = task.cpus.size() == 1 ? task.cpus.front() : -1});
+  }
+  return threads;
+}
+
+std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available) {
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "memory: the history of %u sets takes %.1f GB, %.1f GB are available: lower "
+                "history.sets, or free memory",
+                layout.sets, static_cast<double>(layout.bytes()) * 1e-9,
+                static_cast<double>(available) * 1e-9);
+  return line;
+}
+
+double cpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::uint64_t residentBytes() {
+  std::uint64_t pages = 0;
+  std::uint64_t resident = 0;
+  if (std::FILE* statm = std::fopen("/proc/self/statm", "re")) {
+    if (std::fscanf(statm, "%lu %lu", &pages, &resident) != 2) resident = 0;
+    (void)std::fclose(statm);
+  }
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+Appliance::Appliance(const Config& config, const Rig& rig)
+    : config_(config),
+      rig_(rig),
+      period_(periodOf(config.trigger.rate_hz)),
+      target_m_{rig.target_m.x(), rig.target_m.y(), rig.target_m.z()},
+      target_({target_m_[0], target_m_[1], target_m_[2]}),
+      board_(static_cast<std::uint32_t>(rig.cameras.size())) {}
+
+std::expected<std::unique_ptr<Appliance>, std::string> Appliance::start(const Config& config,
+                                                                        const Rig& rig,
+                                                                        hal::Display& display,
+                                                                        PictureObserver* observer) {
+  std::unique_ptr<Appliance> appliance(new Appliance(config, rig));
+  auto done = appliance->makeHistory();
+  if (done) done = appliance->openDevices();
+  if (done) done = appliance->openTrace();
+  if (done) {
+    appliance->makeLoops(display, observer);
+    done = appliance->startThreads(display);
+  }
+  if (!done) return std::unexpected(done.error());
+  return appliance;
+}
+
+std::expected<void, std::string> Appliance::makeHistory() {
+  HistoryLayout layout{.frame_bytes = {},
+                       .sets = config_.history.sets,
+                       .in_flight = config_.history.in_flight,
+                       .reserve = config_.history.reserve};
+  for (const RigCamera& camera : rig_.cameras) {
+    layout.frame_bytes.push_back(std::size_t{camera.width_px} * camera.height_px);
+  }
+  const std::uint64_t available = rt::availableMemoryBytes();
+  const std::uint64_t margin = rt::LockedArena::kMarginBytes;
+  const auto fitted = fitHistory(layout, available > margin ? available - margin : 0, kFewestSets);
+  if (!fitted || (fitted->sets < layout.sets && !config_.history.size_down)) {
+    return std::unexpected(historyTooLarge(layout, available));
+  }
+  if (fitted->sets < layout.sets) {
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "memory is short: the history holds %u sets (%.1f s) instead of %u", fitted->sets,
+                  fitted->sets / config_.trigger.rate_hz, layout.sets);
+    degraded_.emplace_back(line);
+  }
+  auto history = FrameHistory::create(*fitted);
+  if (!history) return std::unexpected(history.error());
+  history_ = std::move(*history);
+  if (config_.realtime.lock_memory && !history_->memory().report().locked) {
+    degraded_.emplace_back(
+        "the frame history is not locked in memory: raise the memlock limit "
+        "(LimitMEMLOCK=infinity)");
+  }
+  return {};
+}
+
+std::expected<void, std::string> Appliance::openDevices() {
+  auto line = hal::openTriggerLine(config_.trigger.backend,
+                                   static_cast<std::uint16_t>(config_.trigger.wire_port));
+  if (!line) return std::unexpected(line.error());
+  trigger_line_ = std::move(*line);
+
+  if (config_.panel.backend != "none") {
+    auto panel = hal::openButtonPanel(config_.panel.backend, config_.panel.script);
+    if (!panel) return std::unexpected(panel.error());
+    panel_ = std::move(*panel);
+  }
+  openCameras();
+  if (std::ranges::none_of(cameras_, [](const auto& camera) { return camera != nullptr; })) {
+    return std::unexpected("no camera opened: " + degraded_.back());
+  }
+  return {};
+}
+
+void Appliance::openCameras() {
+  for (std::size_t i = 0; i < rig_.cameras.size(); ++i) {
+    auto camera =
+        hal::openCamera(config_.cameras.backend,
+                        profileOf(config_.cameras, rig_.cameras[i], config_.cameras.addresses[i]),
+                        threadConfig(receiveThreadName(i), config_.realtime.receive));
+    if (!camera) degraded_.push_back(camera.error());
+    cameras_.push_back(camera ? std::move(*camera) : nullptr);
+  }
+}
+
+std::expected<void, std::string> Appliance::openTrace() {
+  if (config_.state.trace.empty()) return {};
+  auto trace = TraceWriter::open(config_.state.trace, kFirstCameraTrace + cameras_.size());
+  if (!trace) return std::unexpected(trace.error());
+  trace_ = std::move(*trace);
+  return {};
+}
+
+void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
+  renderer_ = display.renderer();
+  const auto producer = [&](std::size_t index) {
+    return trace_ ? &trace_->producer(index) : nullptr;
+  };
+  const rt::Nanoseconds camera_delay = microseconds(config_.cameras.exposure_us);
+  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
+    collectors_.push_back(std::make_unique<Collector>(i, Association{period_, camera_delay},
+                                                      history_->camera(i), board_,
+                                                      producer(kFirstCameraTrace + i)));
+  }
+  trigger_loop_ = std::make_unique<TriggerLoop>(
+      TriggerTiming{.period = period_, .pulse_width = microseconds(config_.trigger.pulse_width_us)},
+      *trigger_line_, board_.edges, producer(kTriggerTrace));
+  render_loop_ = std::make_unique<RenderLoop>(
+      RenderParts{.rig = rig_,
+                  .history = *history_,
+                  .board = board_,
+                  .target = target_,
+                  .display = display,
+                  .trace = producer(kRenderTrace),
+                  .observer = observer},
+      RenderParameters{.trigger_period = period_,
+                       .zoom = config_.display.zoom,
+                       .pixel_format = config_.cameras.pixel_format,
+                       .director = {.sweep_views_per_second = config_.director.sweep_views_per_s}});
+}
+
+std::expected<void, std::string> Appliance::startThreads(const hal::Display& display) {
+  const auto& realtime = config_.realtime;
+  auto started = startThread(render_thread_, "render", realtime.render,
+                             [this](auto stop) { render_loop_->run(stop); });
+  if (started && panel_) {
+    started =
+        startThread(panel_thread_, "panel", realtime.panel, [this](auto stop) { runPanel(stop); });
+  }
+  for (std::uint32_t i = 0; started && i < history_->cameras(); ++i) {
+    if (!cameras_[i]) continue;
+    CameraFrames& frames = history_->camera(i);
+    const auto streaming = cameras_[i]->start(*collectors_[i], frames.slots(), frames.firstSlots());
+    if (!streaming) {
+      degraded_.push_back(streaming.error());
+      cameras_[i].reset();
+    }
+  }
+  // Cameras wait for their trigger now; the first edge is the last thing to come.
+  if (started) {
+    started = startThread(trigger_thread_, "trigger", realtime.trigger,
+                          [this](auto stop) { trigger_loop_->run(stop); });
+  }
+  if (!started) {
+    stopPipeline();
+    return started;
+  }
+  if (trace_) trace_->begin(runRecord(display));
+  return {};
+}
+
+std::expected<void, std::string> Appliance::startThread(rt::Thread& thread, const char* name,
+                                                        const Config::ThreadSchedule& how,
+                                                        std::function<void(std::stop_token)> body) {
+  auto started = rt::Thread::start(threadConfig(name, how), std::move(body));
+  if (!started) {
+    return std::unexpected(std::string("thread ") + name + " does not start: " +
+                           started.error().where + ": check [realtime] in the configuration");
+  }
+  thread = std::move(*started);
+  if (!thread.grant().complete()) {
+    std::string refused = std::string("thread ") + name +
+                          " runs without its real-time priority: grant CAP_SYS_NICE or "
+                          "LimitRTPRIO=95";
+    if (config_.realtime.require) return std::unexpected(refused);
+    degraded_.push_back(std::move(refused));
+  }
+  return {};
+}
+
+void Appliance::runPanel(const std::stop_token& stop) {
+  PanelController controller([this](hal::Button button) { return panel_->isPressed(button); });
+  const auto give = [this](const std::optional<PanelCommand>& given) {
+    if (!given) return;
+    (void)render_loop_->panelCommands().tryPush({given->command, given->cause});
+    board_.frame_ready.ring();
+  };
+  while (!stop.stop_requested()) {
+    const rt::Timestamp now = rt::now();
+    const rt::Timestamp wake =
+        std::min(controller.nextTime().value_or(now + kPanelPoll), now + kPanelPoll);
+    if (const auto event = panel_->waitEvent(std::max(wake - now, rt::Nanoseconds{0}))) {
+      give(controller.onEvent(*event));
+    }
+    give(controller.onTime(rt::now()));
+  }
+}
+
+Appliance::~Appliance() {
+  stopPipeline();
+}
+
+void Appliance::stopPipeline() {
+  trigger_thread_ = {};
+  // Frames of the last triggers are still on the wire.
+  std::this_thread::sleep_for(2 * period_);
+  for (const auto& camera : cameras_) {
+    if (camera) camera->stop();
+  }
+  panel_thread_ = {};
+  if (render_thread_.joinable()) {
+    render_thread_.requestStop();
+    board_.frame_ready.ring();
+  }
+  render_thread_ = {};
+}
+
+std::expected<void, std::string> Appliance::stop() {
+  stopPipeline();
+  return trace_ ? trace_->finish(summary()) : std::expected<void, std::string>{};
+}
+
+bool Appliance::command(const Command& command) {
+  const bool taken = render_loop_->controlCommands().tryPush({command, rt::now()});
+  board_.frame_ready.ring();
+  return taken;
+}
+
+bool Appliance::setTarget(const std::array<double, 3>& target_m) {
+  target_m_ = target_m;
+  target_.set({target_m[0], target_m[1], target_m[2]});
+  board_.frame_ready.ring();
+  return true;
+}
+
+Status Appliance::status() const {
+  const RenderStatus render = render_loop_->status();
+  const auto to_ms = [](rt::Nanoseconds t) { return static_cast<std::uint32_t>(t / 1'000'000ns); };
+  Status status{.mode = render.shot.mode,
+                .view_wanted = render.shot.camera_wanted,
+                .view_shown = render.shot.camera_shown,
+                .delay_ms = to_ms(render.shot.delay),
+                .history_ms = to_ms(history_->sets() * period_),
+                .target_m = target_m_,
+                .shown_hz = render.shown_hz,
+                .triggers = board_.edges.newest(),
+                .degraded = degraded_,
+                .renderer = renderer_};
+  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
+    const CollectorCounts counts = collectors_[i]->counts();
+    status.cameras.push_back({.name = rig_.cameras[i].name,
+                              .state = cameraState(i),
+                              .frames_lost = counts.missing,
+                              .frames_incomplete = counts.incomplete});
+    status.frames_lost += counts.missing;
+    status.frames_incomplete += counts.incomplete;
+  }
+  return status;
+}
+
+CameraState Appliance::cameraState(std::uint32_t camera) const {
+  const std::uint64_t fired = board_.edges.newest();
+  if (!cameras_[camera]) return CameraState::kLost;
+  if (delivers(history_->camera(camera).newest(), fired)) return CameraState::kStreaming;
+  return fired < kLostAfterTriggers + kTriggersOnTheWire ? CameraState::kStarting
+                                                         : CameraState::kLost;
+}
+
+RunRecord Appliance::runRecord(const hal::Display& display) const {
+  const hal::DisplayMode mode = display.mode();
+  const rt::ArenaReport& memory = history_->memory().report();
+  return {.cameras = history_->cameras(),
+          .width_px = rig_.cameras.front().width_px,
+          .height_px = rig_.cameras.front().height_px,
+          .pixel_format = hal::genicamName(config_.cameras.pixel_format),
+          .trigger_hz = config_.trigger.rate_hz,
+          .display_width_px = mode.width_px,
+          .display_height_px = mode.height_px,
+          .refresh_hz = mode.refresh_hz,
+          .renderer = renderer_,
+          .history_sets = history_->sets(),
+          .memory_bytes = memory.bytes,
+          .memory_locked = memory.locked,
+          .threads = tracedThreads(),
+          .degraded = degraded_,
+          .start = rt::now()};
+}
+
+SummaryRecord Appliance::summary() const {
+  SummaryRecord record{.clean_stop = true,
+                       .stop = rt::now(),
+                       .cpu_seconds = cpuSeconds(),
+                       .memory_bytes = residentBytes(),
+                       .pictures_skipped = render_loop_->status().skipped};
+  for (const auto& collector : collectors_) {
+    const CollectorCounts counts = collector->counts();
+    record.frames_lost += counts.missing;
+    record.frames_incomplete += counts.incomplete;
+    record.frames_unattributed += counts.unattributed;
+  }
+  return record;
+}
+
+}  // namespace appliance

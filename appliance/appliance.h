@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "appliance/capture/collector.h"
+#include "appliance/capture/frame_history.h"
+#include "appliance/capture/trigger_loop.h"
+#include "appliance/config/config.h"
+#include "appliance/control/status.h"
+#include "appliance/geometry/rig.h"
+#include "appliance/geometry/target_track.h"
+#include "appliance/render/render_loop.h"
+#include "appliance/trace/trace_writer.h"
+#include "hal/button_panel.h"
+#include "hal/camera.h"
+#include "hal/display.h"
+#include "hal/trigger_line.h"
+#include "rt/thread.h"
+
+namespace appliance {
+
+/// The running pipeline: trigger line -> cameras -> frame history -> director -> display.
+///
+/// start() sets everything up before the real-time threads see it, and fires the first trigger
+/// last; stop() goes the other way. A camera that does not open is left out and named, the rest
+/// runs on.
+///
+/// Threads  All members: the owner (main), which serves the control interface too. The threads
+///          it starts are those of docs/real-time.md.
+/// Errors   start(): one line for a person; nothing is left running.
+class Appliance final : public ControlSink, public StatusSource {
+ public:
+  /// @p display and @p observer outlive the appliance.
+  [[nodiscard]] static std::expected<std::unique_ptr<Appliance>, std::string> start(
+      const Config& config, const Rig& rig, hal::Display& display, PictureObserver* observer);
+
+  ~Appliance() override;
+  Appliance(const Appliance&) = delete;
+  Appliance& operator=(const Appliance&) = delete;
+
+  /// Stops the trigger, waits for the frames on the wire, then everything else.
+  /// Errors: the trace could not be written whole.
+  std::expected<void, std::string> stop();
+
+  [[nodiscard]] bool command(const Command& command) override;
+  [[nodiscard]] bool setTarget(const std::array<double, 3>& target_m) override;
+  [[nodiscard]] Status status() const override;
+
+ private:
+  Appliance(const Config& config, const Rig& rig);
+
+  [[nodiscard]] std::expected<void, std::string> makeHistory();
+  [[nodiscard]] std::expected<void, std::string> openDevices();
+  void openCameras();
+  [[nodiscard]] std::expected<void, std::string> openTrace();
+  void makeLoops(hal::Display& display, PictureObserver* observer);
+  [[nodiscard]] std::expected<void, std::string> startThreads(const hal::Display& display);
+  [[nodiscard]] std::expected<void, std::string> startThread(rt::Thread& thread, const char* name,
+                                                             const Config::ThreadSchedule& how,
+                                                             std::function<void(std::stop_token)>);
+  [[nodiscard]] CameraState cameraState(std::uint32_t camera) const;
+  void runPanel(const std::stop_token& stop);
+  void stopPipeline();
+  [[nodiscard]] RunRecord runRecord(const hal::Display& display) const;
+  [[nodiscard]] SummaryRecord summary() const;
+
+  const Config config_;
+  const Rig rig_;
+  const rt::Nanoseconds period_;
+  std::vector<std::string> degraded_;  // what is less than configured, a line each
+
+  std::string renderer_;
+  std::array<double, 3> target_m_;
+  TargetTrack target_;
+  CaptureBoard board_;
+  std::unique_ptr<FrameHistory> history_;
+  std::unique_ptr<hal::TriggerLine> trigger_line_;
+  std::unique_ptr<hal::ButtonPanel> panel_;
+  std::unique_ptr<TraceWriter> trace_;  // none: not traced
+  std::vector<std::unique_ptr<Collector>> collectors_;
+  std::vector<std::unique_ptr<hal::Camera>> cameras_;  // null where it did not open
+  std::unique_ptr<TriggerLoop> trigger_loop_;
+  std::unique_ptr<RenderLoop> render_loop_;
+
+  rt::Thread panel_thread_;
+  rt::Thread render_thread_;
+  rt::Thread trigger_thread_;
+};
+
+}  // namespace appliance

@@ -1,0 +1,29 @@
+#include "appliance/log.h"
+
+#include <cstdio>
+
+#include <systemd/sd-daemon.h>
+#include <unistd.h>
+
+namespace appliance {
+namespace {
+
+void write(const char* level, const char* word, std::string_view line) {
+  static const bool terminal = isatty(STDERR_FILENO) != 0;
+  std::fprintf(stderr, "%s%.*s\n", terminal ? word : level, static_cast<int>(line.size()),
+               line.data());
+}
+
+}  // namespace
+
+void logInfo(std::string_view line) {
+  write(SD_INFO, "", line);
+}
+void logWarning(std::string_view line) {
+  write(SD_WARNING, "warning: ", line);
+}
+void logError(std::string_view line) {
+  write(SD_ERR, "error: ", line);
+}
+
+}  // namespace appliance

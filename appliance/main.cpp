@@ -1,0 +1,156 @@
+// kagamid: the appliance daemon. Reads top to bottom as the box starts: configuration, display,
+// pipeline, control interface, then one loop until somebody ends it.
+
+#include <cstdio>
+#include <cstdlib>
+#include <expected>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <systemd/sd-daemon.h>
+
+#include "appliance/appliance.h"
+#include "appliance/camera_watch.h"
+#include "appliance/config/config.h"
+#include "appliance/control/control_server.h"
+#include "appliance/geometry/rig_file.h"
+#include "appliance/log.h"
+#include "appliance/picture_recorder.h"
+#include "appliance/startup_checks.h"
+#include "appliance/stop_signals.h"
+#include "rt/memory.h"
+#include "ui-kms/offscreen_display.h"
+
+namespace {
+
+using namespace appliance;
+
+struct Options {
+  std::string config_file = "/etc/kagami/kagamid.toml";
+  std::vector<std::string> overrides;
+  bool check_config = false;
+};
+
+struct Site {
+  Config config;
+  Rig rig;
+};
+
+std::expected<Site, std::string> loadSite(const Options& options) {
+  auto config = loadConfig(options.config_file, options.overrides);
+  if (!config) return std::unexpected(config.error());
+  auto rig = loadRig(config->rig.file);
+  if (!rig) return std::unexpected(rig.error());
+  if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
+  return Site{std::move(*config), std::move(*rig)};
+}
+
+std::expected<std::unique_ptr<ui::OffscreenDisplay>, std::string> makeDisplay(
+    const Config::Display& config, const Rig& rig) {
+  if (config.backend != "offscreen") {
+    return std::unexpected("display.backend = \"" + config.backend + "\" is not \"offscreen\"");
+  }
+  auto display =
+      ui::OffscreenDisplay::create({.renderer = {.width_px = config.width_px,
+                                                 .height_px = config.height_px,
+                                                 .source_width_px = rig.cameras.front().width_px,
+                                                 .source_height_px = rig.cameras.front().height_px,
+                                                 .font_path = config.font,
+                                                 .software_threads = config.render_threads},
+                                    .refresh_hz = config.refresh_hz});
+  if (display && !(*display)->textWarning().empty()) logWarning((*display)->textWarning());
+  return display;
+}
+
+std::unique_ptr<ControlServer> openControl(const Config::Control& config, Appliance& running) {
+  if (config.bus == "none") return nullptr;
+  auto control = ControlServer::open(config.bus, config.name, running, running);
+  if (control) return std::move(*control);
+  logWarning(control.error());
+  return nullptr;
+}
+
+/// Until a stop signal: answers the control interface, watches the cameras, feeds the watchdog.
+void serve(Appliance& running, const Config::Control& config, StopSignals& stop) {
+  constexpr rt::Nanoseconds kTick = std::chrono::milliseconds(100);
+  auto control = openControl(config, running);
+  CameraWatch watch;
+  sd_notify(0, "READY=1");
+  while (!stop.requested()) {
+    if (control) {
+      control->wait(kTick);
+      if (const auto served = control->process(); !served) {
+        logWarning(served.error());
+        control.reset();
+      }
+    } else {
+      stop.waitFor(kTick);
+    }
+    for (const std::string& line : watch.look(running.status())) logWarning(line);
+    sd_notify(0, "WATCHDOG=1");
+  }
+  sd_notify(0, "STOPPING=1");
+}
+
+/// Errors   One line; nothing is left running.
+std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
+  const Config& config = site.config;
+  auto display = makeDisplay(config.display, site.rig);
+  if (!display) return std::unexpected(display.error());
+
+  std::unique_ptr<PictureRecorder> recorder;
+  if (!config.record.directory.empty()) {
+    auto made = PictureRecorder::create(config.record, (*display)->mode(), **display);
+    if (!made) return std::unexpected(made.error());
+    recorder = std::move(*made);
+  }
+  if (config.realtime.lock_memory) {
+    const rt::MemoryLock lock = rt::lockMemory();
+    if (!lock.locked && config.realtime.require) return std::unexpected(lock.message);
+    if (!lock.locked) logWarning(lock.message);
+  }
+
+  auto running = Appliance::start(config, site.rig, **display, recorder.get());
+  if (!running) return std::unexpected(running.error());
+  logInfo(motionBlurLine(config, site.rig));
+  for (const std::string& line : (*running)->status().degraded) logWarning(line);
+  logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
+          std::string((*display)->renderer()));
+
+  serve(**running, config.control, stop);
+
+  if (const auto stopped = (*running)->stop(); !stopped) return stopped;
+  return recorder ? recorder->finish() : std::expected<void, std::string>{};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"kagamid: fires the cameras, keeps the last seconds, shows the athlete"};
+  app.add_option("--config", options.config_file, "Configuration file")->capture_default_str();
+  app.add_option("--set", options.overrides, "Override a key: --set display.zoom=1.5")
+      ->type_name("SECTION.KEY=VALUE");
+  app.add_flag("--check-config", options.check_config, "Check configuration and rig, then end");
+  app.set_version_flag("--version", KAGAMI_VERSION);
+  CLI11_PARSE(app, argc, argv);
+
+  StopSignals stop;  // before any thread
+  const auto site = loadSite(options);
+  if (!site) {
+    logError(site.error());
+    return EXIT_FAILURE;
+  }
+  if (options.check_config) {
+    std::printf("%s: good; %s: %zu cameras\n", options.config_file.c_str(),
+                site->config.rig.file.c_str(), site->rig.cameras.size());
+    return EXIT_SUCCESS;
+  }
+  if (const auto ended = run(*site, stop); !ended) {
+    logError(ended.error());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,81 @@
+#include "appliance/picture_recorder.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "appliance/trace/trace_file.h"
+
+namespace appliance {
+namespace {
+
+// A still is taken of a mode's 10th picture: what came on screen with the mode has settled.
+constexpr std::uint32_t kSettled = 10;
+
+}  // namespace
+
+std::expected<std::unique_ptr<PictureRecorder>, std::string> PictureRecorder::create(
+    const Config::Record& config, hal::DisplayMode mode, ui::PictureSource& source) {
+  std::error_code error;
+  std::filesystem::create_directories(config.directory, error);
+  if (error) {
+    return std::unexpected("record.directory = \"" + config.directory + "\": " + error.message() +
+                           ": give a folder that can be written");
+  }
+  auto recorder = ui::Recorder::create({.folder = config.directory,
+                                        .video_width_px = config.video_width_px,
+                                        .video_hz = config.video_hz},
+                                       mode, source);
+  if (!recorder) return std::unexpected(recorder.error());
+  return std::unique_ptr<PictureRecorder>(
+      new PictureRecorder(config.directory, std::move(*recorder)));
+}
+
+void PictureRecorder::onPicture(const ShownPicture& picture) noexcept {
+  const PictureRecord& record = picture.record;
+  ui::PictureStamp stamp{.picture_id = record.picture_id,
+                         .camera = record.camera_shown,
+                         .trigger = record.trigger,
+                         .commit = record.commit};
+  std::snprintf(stamp.mode.data(), stamp.mode.size(), "%s", nameOf(record.mode).data());
+  if (picture.plan != nullptr) {
+    stamp.H_camera_display = picture.plan->H_camera_display;
+    stamp.lens = picture.plan->lens;
+  }
+  std::array<char, 32> name{};
+  nameStill(record, name);
+  recorder_->keep(stamp, name.data());
+}
+
+void PictureRecorder::nameStill(const PictureRecord& record, std::array<char, 32>& name) noexcept {
+  pictures_in_mode_ = record.mode == mode_ ? pictures_in_mode_ + 1 : 1;
+  mode_ = record.mode;
+  if (record.trigger == 0 || record.substitute) return;
+  bool& kept = kept_[static_cast<std::size_t>(record.mode)];
+  if (record.mode == Mode::kSweep) {
+    bool& view_kept = view_kept_[record.camera_shown];
+    if (!view_kept) {
+      std::snprintf(name.data(), name.size(), "view%02u", record.camera_shown + 1);
+    }
+    view_kept = kept = true;
+  } else if (!kept && (pictures_in_mode_ == kSettled || record.mode == Mode::kFrozen)) {
+    std::snprintf(name.data(), name.size(), "%s", nameOf(record.mode).data());
+    kept = true;
+  }
+}
+
+std::expected<void, std::string> PictureRecorder::finish() {
+  const auto cost = recorder_->finish();
+  if (!cost) return std::unexpected(cost.error());
+  const std::string path = folder_ + "/recorder.json";
+  std::FILE* file = std::fopen(path.c_str(), "we");
+  if (file == nullptr) return std::unexpected(path + ": cannot be written");
+  std::fprintf(file,
+               "{\"frames\": %lu, \"dropped\": %lu, \"render_thread_s\": %.6f, "
+               "\"writer_cpu_s\": %.6f}\n",
+               cost->frames, cost->dropped, static_cast<double>(cost->render_thread_ns) * 1e-9,
+               static_cast<double>(cost->writer_cpu_ns) * 1e-9);
+  if (std::fclose(file) != 0) return std::unexpected(path + ": cannot be written");
+  return {};
+}
+
+}  // namespace appliance
