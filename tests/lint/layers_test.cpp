@@ -9,7 +9,6 @@
 namespace {
 
 using lint::LayerTable;
-using lint::SourceFile;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

@@ -1,0 +1,319 @@
+#!/bin/sh
+# ./dev demo: the real programs, end to end. kagami-emulator plays the cameras, kagamid is the box,
+# a script presses the buttons, and kagami turns what was recorded into a report and a film.
+# POSIX sh; everything it started has ended when it ends.
+set -eu
+
+usage() {
+  cat <<'TEXT'
+Usage: ./dev demo [OPTIONS]
+
+Runs the whole box on emulated GigE Vision cameras: live, delayed, frozen, sweep. First the stamp
+scene, then, where it is found, a real recording. Exits non-zero when frames were lost or the
+machine could not keep the emulated cameras' times (then nothing is said about losses).
+
+  --seconds S     length of each run (default 60)
+  --cameras N     cameras in the stamp scene (default 20)
+  --size WxH      their size in pixels (default 1280x1024)
+  --fps F         trigger rate (default 40)
+  --scene SCENE   stamp, recording or all (default), or a folder with videos and rig.toml
+  --out DIR       where film, stills and reports go (default out/demo)
+  --report FILE   also copy report.json of the first scene there
+  --interactive   keys of this terminal instead of the script; ends with Ctrl-C
+
+The recording is looked for in $KAGAMI_DATA_DIR, else in ../shared/data beside this folder.
+TEXT
+}
+
+say() { printf 'demo: %s\n' "$*"; }
+fail() { printf 'demo: %s\n' "$*" >&2; exit 1; }
+
+root=$(cd -- "$(dirname -- "$0")/../.." && pwd)
+bin=$root/build/release/bin
+rate_of_recording=60   # Hz, as it was taken
+
+seconds=60
+cameras=20
+size=1280x1024
+fps=40
+scene=all
+out=out/demo
+report=
+interactive=
+while [ $# -gt 0 ]; do
+  case $1 in
+    -h|--help) usage; exit 0 ;;
+    --interactive) interactive=yes; shift; continue ;;
+    --seconds|--cameras|--size|--fps|--scene|--out|--report) ;;
+    *) fail "unknown option '$1'; ./dev demo --help" ;;
+  esac
+  [ $# -ge 2 ] || fail "$1 needs a value; ./dev demo --help"
+  case $1 in
+    --seconds) seconds=$2 ;;
+    --cameras) cameras=$2 ;;
+    --size) size=$2 ;;
+    --fps) fps=$2 ;;
+    --scene) scene=$2 ;;
+    --out) out=$2 ;;
+    --report) report=$2 ;;
+  esac
+  shift 2
+done
+
+whole_number() {  # NAME VALUE
+  case $2 in ''|*[!0-9]*|0*) fail "$1 $2: a whole number above 0 is needed" ;; esac
+}
+whole_number --seconds "$seconds"
+whole_number --cameras "$cameras"
+case $size in
+  [1-9]*x[1-9]*) ;;
+  *) fail "--size $size: WIDTHxHEIGHT is needed, for instance 1280x1024" ;;
+esac
+printf '%s\n' "$fps" | grep -Eq '^[0-9]+(\.[0-9]+)?$' || fail "--fps $fps: a number is needed"
+[ -z "$interactive" ] || [ -t 0 ] || fail '--interactive needs a terminal on standard input'
+for program in kagami-emulator kagamid kagami; do
+  [ -x "$bin/$program" ] || fail "$program is not built: ./dev build"
+done
+
+# ---- processes -----------------------------------------------------------------------------
+emulator=
+daemon=
+stopped=
+
+ended() { ! kill -0 "$1" 2>/dev/null; }
+
+# A process that does not end by itself within the time is killed: nothing stays behind.
+end_process() {  # PID TENTHS
+  [ -n "$1" ] || return 0
+  kill -TERM "$1" 2>/dev/null || true
+  left=$2
+  while [ "$left" -gt 0 ] && ! ended "$1"; do
+    sleep 0.1
+    left=$((left - 1))
+  done
+  kill -KILL "$1" 2>/dev/null || true
+}
+
+cleanup() {
+  end_process "$daemon" 100
+  end_process "$emulator" 50
+}
+trap cleanup EXIT
+trap 'exit 129' HUP
+trap 'exit 143' TERM
+if [ -n "$interactive" ]; then
+  trap 'stopped=yes' INT  # Ctrl-C is how an interactive run ends: the report comes after it
+else
+  trap 'exit 130' INT
+fi
+
+# The last lines of a program that failed, then what to do about it.
+broken() {  # PROGRAM LOG ADVICE
+  printf 'demo: %s failed; its last lines:\n' "$1" >&2
+  tail -n 12 "$2" | sed 's/^/    /' >&2
+  fail "$3 (whole log: $2)"
+}
+
+wait_for_line() {  # PID LOG PATTERN TENTHS: 1 when it did not come
+  left=$4
+  while ! grep -q "$3" "$2"; do
+    if [ "$left" = 0 ] || ended "$1"; then
+      grep -q "$3" "$2" || return 1
+    fi
+    sleep 0.1
+    left=$((left - 1))
+  done
+}
+
+# ---- one scene -----------------------------------------------------------------------------
+# The panel script in whole rounds over the run's seconds.
+panel_script() {
+  awk -v seconds="$seconds" '
+    $1 == "#" && $2 == "phase" { phase[lines] = 1; time[lines] = $3
+                                 sub(/^# phase [0-9.]+ /, ""); text[lines++] = $0; next }
+    /^#/ || NF == 0 { next }
+    { time[lines] = $1; sub(/^[0-9.]+ /, ""); text[lines++] = $0 }
+    END {
+      rounds = int(seconds / 60); if (rounds < 1) rounds = 1
+      for (round = 0; round < rounds; ++round)
+        for (i = 0; i < lines; ++i) {
+          at = (round + time[i] / 60) * seconds / rounds
+          if (phase[i]) printf "# phase %.3f %s\n", at, text[i]
+          else printf "%.3f %s\n", at, text[i]
+        }
+    }' "$root/tests/demo/panel.txt"
+}
+
+phase_at() {  # SECOND SCRIPT
+  awk -v now="$1" '$2 == "phase" && $3 <= now { sub(/^# phase [0-9.]+ /, ""); name = $0 }
+    END { print name }' "$2"
+}
+
+# Only what differs from the daemon's defaults. The screen ticks at a multiple of the rate.
+write_config() {  # RUN-FOLDER RATE
+  addresses=$(awk '/^\[\[camera\]\]/ { printf "%s\"127.0.0.%d\"", n ? ", " : "", n + 1; ++n }' \
+    "$1/rig.toml")
+  refresh_hz=$(awk -v rate="$2" 'BEGIN { n = 1; while (n * rate < 60) ++n; printf "%.3f", n * rate }')
+  panel=scripted
+  [ -z "$interactive" ] || panel=terminal
+  cat <<TEXT
+[rig]
+file = "$1/rig.toml"
+[cameras]
+addresses = [$addresses]
+[trigger]
+rate_hz = $2
+[display]
+refresh_hz = $refresh_hz
+[panel]
+backend = "$panel"
+script = "$1/panel.txt"
+[record]
+directory = "$1/pictures"
+[state]
+directory = "$1/state"
+trace = "$1/trace.jsonl"
+[control]
+bus = "none"
+TEXT
+}
+
+start_emulator() {  # RUN-FOLDER OPTION...
+  run=$1; shift
+  "$bin/kagami-emulator" "$@" --wire-log "$run/wire.csv" --stats "$run/emulator.json" \
+    > "$run/emulator.log" 2>&1 </dev/null &
+  emulator=$!
+  wait_for_line "$emulator" "$run/emulator.log" '^ready' 600 ||
+    broken kagami-emulator "$run/emulator.log" 'its message says what to do'
+}
+
+start_daemon() {  # RUN-FOLDER
+  exec 3<&0
+  "$bin/kagamid" --config "$1/kagamid.toml" > "$1/kagamid.log" 2>&1 <&3 &
+  daemon=$!
+  exec 3<&-
+  wait_for_line "$daemon" "$1/kagamid.log" 'running: ' 900 ||
+    broken kagamid "$1/kagamid.log" 'its message says what to do'
+  # What is less than configured, and the keys of an interactive run.
+  sed -n 's/^<4>/demo: kagamid: /p; s/^keys: /demo: keys: /p' "$1/kagamid.log"
+}
+
+watch_run() {  # RUN-FOLDER
+  second=0
+  while [ "$second" -lt "$seconds" ] || [ -n "$interactive" ]; do
+    [ -z "$stopped" ] || return 0
+    ! ended "$daemon" || broken kagamid "$1/kagamid.log" 'it ended in the middle of the run'
+    ! ended "$emulator" ||
+      broken kagami-emulator "$1/emulator.log" 'it ended in the middle of the run'
+    if [ -z "$interactive" ] && [ $((second % 5)) = 0 ]; then
+      say "$second of $seconds s: $(phase_at "$second" "$1/panel.txt")"
+    fi
+    sleep 1 || true
+    second=$((second + 1))
+  done
+}
+
+stop_programs() {  # RUN-FOLDER
+  rc=0
+  kill -TERM "$daemon" 2>/dev/null || true
+  wait "$daemon" || rc=$?
+  daemon=
+  [ "$rc" = 0 ] || broken kagamid "$1/kagamid.log" "it did not end well (exit status $rc)"
+  kill -TERM "$emulator" 2>/dev/null || true
+  wait "$emulator" || rc=$?
+  emulator=
+  [ "$rc" = 0 ] ||
+    broken kagami-emulator "$1/emulator.log" "it did not end well (exit status $rc)"
+}
+
+# The film is made from what was recorded, whatever the report's verdict.
+conclude() {  # NAME FOLDER
+  run=$2/run
+  good=yes
+  "$bin/kagami" report "$run/trace.jsonl" --wire-log "$run/wire.csv" \
+    --emulator "$run/emulator.json" --json "$2/report.json" > "$2/report.txt" || good=
+  [ -s "$2/report.txt" ] || fail "kagami report failed on $run/trace.jsonl (above)"
+  cat "$2/report.txt"
+  say "$1: making the film"
+  "$bin/kagami" film "$run/pictures" --out "$2" > "$run/film.log" 2>&1 ||
+    broken 'kagami film' "$run/film.log" "the pictures are in $run/pictures"
+  say "$1: film, stills, contact sheet and report are in $2"
+  if [ -z "$good" ]; then
+    say "$1: NOT GOOD, the report says why" >&2
+    verdict=1
+  fi
+}
+
+run_scene() {  # NAME FOLDER RATE EMULATOR-OPTION...
+  name=$1; folder=$2; rate=$3; shift 3
+  run=$folder/run
+  rm -rf "$run"
+  mkdir -p "$run/pictures" "$run/state"
+  panel_script > "$run/panel.txt"
+  say "$name: starting the emulated cameras"
+  start_emulator "$run" "$@"
+  [ -f "$run/rig.toml" ] || cp "$scene_folder/rig.toml" "$run/rig.toml"
+  write_config "$run" "$rate" > "$run/kagamid.toml"
+  start_daemon "$run"
+  watch_run "$run"
+  stop_programs "$run"
+  conclude "$name" "$folder"
+}
+
+run_stamp() {  # FOLDER
+  run_scene stamp "$1" "$fps" --scene stamp --cameras "$cameras" --size "$size" \
+    --rig-out "$1/run/rig.toml"
+}
+
+run_folder() {  # NAME FOLDER RATE SCENE-FOLDER
+  scene_folder=$4
+  [ -f "$4/rig.toml" ] || fail "scene $4: there is no rig.toml in it (docs/emulator.md)"
+  run_scene "$1" "$2" "$3" --scene "$4"
+}
+
+# The recording as the emulator wants it, made once and kept outside the source tree.
+convert_recording() {  # prints the folder; 3 when there is no recording
+  source=${KAGAMI_DATA_DIR:-$root/../shared/data}/pose2sim_single
+  [ -d "$source" ] || return 3
+  converted=${XDG_CACHE_HOME:-${HOME:-/var/tmp}/.cache}/kagami/pose2sim_single
+  if [ ! -f "$converted/rig.toml" ]; then
+    say 'recording: converting, once' >&2
+    rm -rf "$converted.new" "$converted"
+    mkdir -p "$(dirname "$converted")"
+    "$bin/kagami-emulator" convert pose2sim "$source" "$converted.new" >&2 ||
+      fail "the recording in $source cannot be converted (above)"
+    mv "$converted.new" "$converted"
+  fi
+  printf '%s\n' "$converted"
+}
+
+run_recording() {  # FOLDER
+  rc=0
+  folder_of_recording=$(convert_recording) || rc=$?
+  case $rc in
+    0) ;;
+    3) [ "$scene" = all ] || fail 'no recording: set KAGAMI_DATA_DIR to the folder that holds it'
+      say 'recording: none in $KAGAMI_DATA_DIR or ../shared/data: left out'
+      return 0 ;;
+    *) exit "$rc" ;;
+  esac
+  run_folder recording "$1" "$rate_of_recording" "$folder_of_recording"
+}
+
+# ---- what was asked for --------------------------------------------------------------------
+mkdir -p "$out" || fail "--out $out cannot be made"
+out=$(cd -- "$out" && pwd)
+verdict=0
+case $scene in
+  stamp) run_stamp "$out" ;;
+  recording) run_recording "$out" ;;
+  all)
+    run_stamp "$out"
+    [ -n "$stopped" ] || run_recording "$out/recording"
+    ;;
+  *) run_folder scene "$out" "$fps" "$scene" ;;
+esac
+if [ -n "$report" ]; then
+  cp "$out/report.json" "$report" || fail "--report $report cannot be written"
+fi
+exit "$verdict"
