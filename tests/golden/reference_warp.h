@@ -1,0 +1,20 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "hal/display.h"
+
+/// The same picture as the renderer's by another way: every pixel's backward map in double,
+/// bilinear in linear light by cv::remap on floats, and the sRGB formula itself.
+struct ReferencePicture {
+  cv::Mat3f rgb;     ///< encoded, 0 to 255
+  cv::Mat1b inside;  ///< 255 where the lookup's whole footprint lies in the source
+  cv::Mat1b border;  ///< 255 where nothing of the source may show
+};
+
+/// @p linear_rgb: the demosaiced source, 8 bits per channel.
+ReferencePicture referenceWarp(const hal::WarpPlan& plan, const cv::Mat3b& linear_rgb,
+                               cv::Size display);
+
+/// In dB over the pixels of @p mask, all channels.
+double psnr(const cv::Mat3f& a, const cv::Mat3f& b, const cv::Mat1b& mask);

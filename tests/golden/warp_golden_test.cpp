@@ -1,0 +1,287 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/golden/reference_warp.h"
+#include "tests/golden/synthetic_scene.h"
+#include "ui-kms/cpu_demosaic.h"
+#include "ui-kms/offscreen_display.h"
+
+namespace {
+
+constexpr double kEnoughDb = 40;
+const cv::Size kLandscape(1280, 1024);
+const cv::Size kPortrait(1088, 1920);
+const cv::Size kDisplay(1280, 720);
+
+/// One camera picture with everything that is borrowed by a plan for it.
+struct Camera {
+  explicit Camera(cv::Size size, hal::PixelFormat format = hal::PixelFormat::kBayerRG8)
+      : scene(syntheticScene(size)), mosaic(mosaicOf(scene, format)) {
+    plan.source = {mosaic.data(), static_cast<std::uint32_t>(size.width),
+                   static_cast<std::uint32_t>(size.height), format};
+    plan.H_camera_display = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    plan.lens = {.fx_px = 1180,
+                 .fy_px = 1175,
+                 .cx_px = (size.width - 1) / 2.0,
+                 .cy_px = (size.height - 1) / 2.0,
+                 .max_radius = std::numeric_limits<double>::infinity()};
+  }
+
+  /// Zooms by @p scale (source pixels per display pixel) about both centres, turned by @p angle,
+  /// with a tilt that makes w change by @p tilt over the display's width.
+  void look(double scale, double angle, double tilt) {
+    const double cosine = scale * std::cos(angle);
+    const double sine = scale * std::sin(angle);
+    const cv::Matx33d centre(1, 0, -(kDisplay.width - 1) / 2.0, 0, 1, -(kDisplay.height - 1) / 2.0,
+                             0, 0, 1);
+    const cv::Matx33d turn(cosine, -sine, 0, sine, cosine, 0, tilt / kDisplay.width,
+                           tilt / 3 / kDisplay.width, 1);
+    const cv::Matx33d back(1, 0, plan.lens.cx_px, 0, 1, plan.lens.cy_px, 0, 0, 1);
+    const cv::Matx33d h = back * turn * centre;
+    std::copy_n(h.val, 9, plan.H_camera_display.begin());
+  }
+
+  [[nodiscard]] cv::Mat3b demosaiced() const {
+    cv::Mat4b rgba(scene.size());
+    ui::demosaicOnCpu(plan.source, {reinterpret_cast<std::byte*>(rgba.data), rgba.total() * 4});
+    cv::Mat3b rgb;
+    cv::cvtColor(rgba, rgb, cv::COLOR_RGBA2RGB);
+    return rgb;
+  }
+
+  cv::Mat3b scene;
+  std::vector<std::byte> mosaic;
+  hal::WarpPlan plan;
+};
+
+class WarpGolden : public testing::Test {
+ protected:
+  static std::unique_ptr<ui::OffscreenDisplay> makeDisplay(
+      ui::DemosaicSite site = ui::DemosaicSite::kCpu, const std::string& font = {}) {
+    ui::OffscreenConfig config;
+    config.renderer.width_px = static_cast<std::uint32_t>(kDisplay.width);
+    config.renderer.height_px = static_cast<std::uint32_t>(kDisplay.height);
+    config.renderer.demosaic = site;
+    config.renderer.font_path = font;
+    config.refresh_hz = 1000;
+    auto display = ui::OffscreenDisplay::create(config);
+    EXPECT_TRUE(display) << display.error();
+    return display ? std::move(*display) : nullptr;
+  }
+
+  /// Renders, commits and reads back.
+  static cv::Mat3f shown(ui::OffscreenDisplay& display, const hal::WarpPlan* plan,
+                         const hal::StatusLine& status = {}) {
+    cv::Mat4b rgba(kDisplay);
+    EXPECT_TRUE(display.render(plan, status));
+    // A vblank of 1 ms may have to pass since the last picture.
+    const rt::Timestamp patience = rt::now() + std::chrono::seconds(20);
+    while (!display.commit(1) && rt::now() < patience) std::this_thread::yield();
+    EXPECT_TRUE(display.readPicture({reinterpret_cast<std::byte*>(rgba.data), rgba.total() * 4}));
+    cv::Mat3b rgb;
+    cv::cvtColor(rgba, rgb, cv::COLOR_RGBA2RGB);
+    cv::Mat3f picture;
+    rgb.convertTo(picture, CV_32FC3);
+    return picture;
+  }
+
+  static void expectLikeReference(const Camera& camera, int least_inside) {
+    const auto display = makeDisplay();
+    ASSERT_NE(display, nullptr);
+    const cv::Mat3f picture = shown(*display, &camera.plan);
+    const ReferencePicture reference = referenceWarp(camera.plan, camera.demosaiced(), kDisplay);
+    EXPECT_GE(cv::countNonZero(reference.inside), least_inside) << "the test shows too little";
+    const double inside_db = psnr(picture, reference.rgb, reference.inside);
+    RecordProperty("psnr_db", std::to_string(inside_db));
+    EXPECT_GE(inside_db, kEnoughDb);
+    expectBlack(picture, reference.border);
+  }
+
+  static void expectBlack(const cv::Mat3f& picture, const cv::Mat1b& where) {
+    // Half a pixel of rounding at the rim belongs to neither side.
+    cv::Mat1b core;
+    cv::erode(where, core, cv::Mat1b(3, 3, uchar{1}));
+    cv::Mat1b lit;
+    cv::inRange(picture, cv::Scalar::all(-1), cv::Scalar::all(0.5), lit);
+    EXPECT_EQ(cv::countNonZero(core & ~lit), 0) << "lit pixels in the border";
+  }
+
+  static hal::StatusLine line(const char* text, bool warning = false) {
+    hal::StatusLine status;
+    std::strncpy(status.text.data(), text, status.text.size() - 1);
+    status.warning = warning;
+    return status;
+  }
+};
+
+constexpr int kAll = 1280 * 720;
+
+TEST_F(WarpGolden, OneToOneIsTheSourceItself) {
+  const Camera camera(kLandscape);
+  expectLikeReference(camera, kAll);
+}
+
+TEST_F(WarpGolden, StrongPerspective) {
+  Camera camera(kLandscape);
+  camera.look(0.7, 0.15, 0.6);
+  expectLikeReference(camera, kAll / 2);
+}
+
+TEST_F(WarpGolden, DistortionOfEveryTerm) {
+  Camera camera(kLandscape);
+  camera.look(1.2, -0.05, 0.1);
+  camera.plan.lens.distortion = {-0.28, 0.12, 0.002, -0.0015, -0.02};
+  expectLikeReference(camera, kAll / 2);
+}
+
+TEST_F(WarpGolden, PortraitCameraOnALandscapeScreen) {
+  Camera camera(kPortrait);
+  camera.look(1.4, 0.02, -0.1);
+  camera.plan.lens.distortion = {-0.08, 0.02, 0.0005, 0.0005, 0};
+  expectLikeReference(camera, kAll / 4);
+}
+
+TEST_F(WarpGolden, GainsActInLinearLightAndClipAtWhite) {
+  Camera camera(kLandscape);
+  camera.look(0.9, 0, 0.05);
+  camera.plan.gain_rgb = {1.9F, 1.0F, 0.55F};
+  expectLikeReference(camera, kAll / 2);
+}
+
+TEST_F(WarpGolden, BeyondTheLensThereIsBorderAndNoFoldedPicture) {
+  Camera camera(kLandscape);
+  camera.look(2.2, 0.1, 0.2);
+  // r (1 - 0.9 r^2) turns back at r = 0.61: without the limit the picture would come twice.
+  camera.plan.lens.distortion = {-0.9, 0, 0, 0, 0};
+  camera.plan.lens.max_radius = 0.6;
+  camera.plan.lens.fx_px = camera.plan.lens.fy_px = 900;
+  expectLikeReference(camera, kAll / 8);
+}
+
+TEST_F(WarpGolden, BehindTheCameraThereIsBorder) {
+  Camera camera(kLandscape);
+  camera.look(0.6, 0, 3.0);  // w changes sign inside the picture
+  expectLikeReference(camera, kAll / 8);
+}
+
+TEST_F(WarpGolden, AViewSmallerThanACellIsStillFound) {
+  Camera camera(kLandscape);
+  camera.look(60, 0.3, 0);  // 21 x 17 pixels on the screen
+  expectLikeReference(camera, 250);
+}
+
+TEST_F(WarpGolden, EveryMosaicComesOutInItsTrueColours) {
+  using enum hal::PixelFormat;
+  for (const auto format : {kBayerRG8, kBayerGB8, kBayerGR8, kBayerBG8}) {
+    for (const auto site : {ui::DemosaicSite::kCpu, ui::DemosaicSite::kGpu}) {
+      // Shades so smooth that any right demosaicing gives them back.
+      cv::Mat3b shades(kLandscape);
+      for (int y = 0; y < shades.rows; ++y) {
+        for (int x = 0; x < shades.cols; ++x) {
+          shades(y, x) = cv::Vec3b(cv::saturate_cast<uchar>(40 + x / 8),
+                                   cv::saturate_cast<uchar>(200 - y / 8), 90);
+        }
+      }
+      Camera camera(kLandscape, format);
+      camera.mosaic = mosaicOf(shades, format);
+      camera.plan.source.pixels = camera.mosaic.data();
+      const auto display = makeDisplay(site);
+      ASSERT_NE(display, nullptr);
+      const cv::Mat3f picture = shown(*display, &camera.plan);
+      const ReferencePicture reference = referenceWarp(camera.plan, shades, kDisplay);
+      EXPECT_GE(psnr(picture, reference.rgb, reference.inside), kEnoughDb)
+          << "format " << static_cast<int>(format) << " site " << static_cast<int>(site);
+    }
+  }
+}
+
+TEST_F(WarpGolden, MonochromeIsGrey) {
+  Camera camera(kLandscape, hal::PixelFormat::kMono8);
+  camera.look(0.8, 0.1, 0.1);
+  expectLikeReference(camera, kAll / 2);
+}
+
+TEST_F(WarpGolden, ShaderDemosaicIsAtLeastAsTrueToTheSceneAsTheCpus) {
+  const Camera camera(kLandscape);
+  const auto gpu = makeDisplay(ui::DemosaicSite::kGpu);
+  const auto cpu = makeDisplay(ui::DemosaicSite::kCpu);
+  ASSERT_TRUE(gpu && cpu);
+  const ReferencePicture truth = referenceWarp(camera.plan, camera.scene, kDisplay);
+  const double gpu_db = psnr(shown(*gpu, &camera.plan), truth.rgb, truth.inside);
+  const double cpu_db = psnr(shown(*cpu, &camera.plan), truth.rgb, truth.inside);
+  RecordProperty("gpu_db", std::to_string(gpu_db));
+  RecordProperty("cpu_db", std::to_string(cpu_db));
+  EXPECT_GE(gpu_db, cpu_db);
+}
+
+TEST_F(WarpGolden, WithoutAPlanThePictureIsEmpty) {
+  const auto display = makeDisplay();
+  ASSERT_NE(display, nullptr);
+  const Camera camera(kLandscape);
+  const cv::Mat3f full = shown(*display, &camera.plan);
+  EXPECT_GT(cv::countNonZero(full.reshape(1)), kAll);
+  const cv::Mat3f empty = shown(*display, nullptr);
+  EXPECT_EQ(cv::countNonZero(empty.reshape(1)), 0);
+}
+
+TEST_F(WarpGolden, StatusLineIsLightOnADarkPlateAndTellsTextsApart) {
+  const auto display = makeDisplay();
+  ASSERT_NE(display, nullptr);
+  ASSERT_EQ(display->textWarning(), "");
+  const cv::Mat3f live = shown(*display, nullptr, line("live"));
+  const cv::Mat3f frozen = shown(*display, nullptr, line("frozen"));
+  double brightest = 0;
+  cv::minMaxLoc(live.reshape(1), nullptr, &brightest);
+  EXPECT_GT(brightest, 220);
+  EXPECT_GT(cv::norm(live, frozen, cv::NORM_L1), 100'000);
+  // It keeps to the foot of the picture.
+  EXPECT_EQ(cv::countNonZero(live.rowRange(0, 600).clone().reshape(1)), 0);
+}
+
+TEST_F(WarpGolden, StatusLettersAreReadableFromFiveMetres) {
+  const auto display = makeDisplay();
+  ASSERT_NE(display, nullptr);
+  const cv::Mat3f picture = shown(*display, nullptr, line("H"));
+  cv::Mat1b bright;
+  cv::inRange(picture, cv::Scalar::all(200), cv::Scalar::all(255), bright);
+  const cv::Rect letter = cv::boundingRect(bright);
+  EXPECT_GE(letter.height, kDisplay.height / 26);  // a capital is 0.7 of the type size
+  EXPECT_LE(letter.height, kDisplay.height / 18);
+}
+
+TEST_F(WarpGolden, AWarningIsABadgeOfAnotherColour) {
+  const auto display = makeDisplay();
+  ASSERT_NE(display, nullptr);
+  const cv::Mat3f plain = shown(*display, nullptr, line("camera 8"));
+  const cv::Mat3f badge = shown(*display, nullptr, line("camera 8", true));
+  const auto amber = [](const cv::Mat3f& picture) {
+    cv::Mat1b mask;
+    cv::inRange(picture, cv::Scalar(200, 120, 0), cv::Scalar(255, 200, 90), mask);
+    return cv::countNonZero(mask);
+  };
+  EXPECT_EQ(amber(plain), 0);
+  EXPECT_GT(amber(badge), 2'000);
+}
+
+TEST_F(WarpGolden, AMissingFontIsNamedAndThePictureGoesOn) {
+  const auto display = makeDisplay(ui::DemosaicSite::kCpu, "/nowhere/none.ttf");
+  ASSERT_NE(display, nullptr);
+  EXPECT_NE(display->textWarning().find("/nowhere/none.ttf"), std::string::npos);
+  Camera camera(kLandscape);
+  const cv::Mat3f picture = shown(*display, &camera.plan, line("live"));
+  const ReferencePicture reference = referenceWarp(camera.plan, camera.demosaiced(), kDisplay);
+  EXPECT_GE(psnr(picture, reference.rgb, reference.inside), kEnoughDb);
+}
+
+}  // namespace
