@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "appliance/config/toml_reader.h"
@@ -52,6 +53,8 @@ void readPose(const TomlTable& table, RigCamera& camera) {
                "the last column of T_cam_rig is in metres and may not exceed 1000 m; "
                "is it in millimetres?");
   }
+  // Rounding in the file would otherwise tilt every product of R with its transpose.
+  camera.R_cam_rig = Eigen::Quaterniond(camera.R_cam_rig).normalized().toRotationMatrix();
 }
 
 RigCamera readCamera(TomlTable& table, std::size_t number) {
