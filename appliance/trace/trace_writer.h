@@ -36,10 +36,10 @@ class TraceProducer {
 /// Writes the trace file: one thread, SCHED_OTHER, empties the producers' rings a few times a
 /// second. Producers never wait for it; what it is too slow for is dropped and counted.
 ///
-/// Threads  open(), begin(), finish(): the owner. producer(i): set up by the owner, used by one
-/// thread each. Memory   All rings are made in open(); producers outlive their threads' last
-/// record(). Errors   A file that cannot be made or written: one line for a person. Writing errors
-/// while
+/// Threads  open(), begin(), finish(): the owner. producer(i): set up by the owner, then used by
+///          one thread.
+/// Memory   All rings are made in open(); the writer outlives its producers' last record().
+/// Errors   A file that cannot be made or written: one line for a person. Writing errors while
 ///          running stop the writing, not the daemon, and are told by finish().
 class TraceWriter {
  public:

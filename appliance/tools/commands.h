@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+/// The commands of `kagami`, one function each: it adds its options to @p kagami and a callback
+/// that does the work. A callback that cannot do it prints one line and throws CLI::RuntimeError.
+namespace appliance {
+
+/// Where the daemon's control interface is looked for.
+struct ControlPlace {
+  std::string bus = "system";
+  std::string name = "org.kagami.Kagami1";
+};
+
+/// status, mode, delay, view, target, freeze, sweep. @p place outlives the parsing.
+void addControlCommands(CLI::App& kagami, const ControlPlace& place);
+void addConfigCommand(CLI::App& kagami);
+void addReportCommand(CLI::App& kagami);
+void addTraceCommand(CLI::App& kagami);
+
+/// Prints "kagami: @p why" and ends the command with exit code 1.
+[[noreturn]] void fail(const std::string& why);
+
+}  // namespace appliance

@@ -1,0 +1,78 @@
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "appliance/control/control_client.h"
+#include "appliance/tools/commands.h"
+#include "appliance/tools/status_text.h"
+
+namespace appliance {
+namespace {
+
+ControlClient connect(const ControlPlace& place) {
+  auto client = ControlClient::open(place.bus, place.name);
+  if (!client) fail(client.error());
+  return std::move(*client);
+}
+
+void expectDone(const ControlClient::Answer& answer) {
+  if (!answer) fail(answer.error());
+}
+
+void showStatus(const ControlPlace& place, bool as_json) {
+  const auto status = connect(place).status();
+  if (!status) fail(status.error());
+  if (as_json) {
+    std::printf("%s\n", status->c_str());
+    return;
+  }
+  const auto text = statusText(*status);
+  if (!text) fail(text.error());
+  std::fputs(text->c_str(), stdout);
+}
+
+}  // namespace
+
+void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
+  CLI::App* status = kagami.add_subcommand("status", "What the box shows and how it is");
+  const auto as_json = std::make_shared<bool>(false);
+  status->add_flag("--json", *as_json, "as one JSON object");
+  status->callback([&place, as_json] { showStatus(place, *as_json); });
+
+  CLI::App* mode = kagami.add_subcommand("mode", "Change the mode");
+  const auto name = std::make_shared<std::string>();
+  mode->add_option("MODE", *name, "live, frozen or sweep")->required();
+  mode->callback([&place, name] { expectDone(connect(place).setMode(*name)); });
+
+  CLI::App* delay = kagami.add_subcommand("delay", "Show what was this long ago; 0 is live");
+  const auto delay_ms = std::make_shared<std::uint32_t>(0);
+  delay->add_option("MILLISECONDS", *delay_ms)->required();
+  delay->callback([&place, delay_ms] { expectDone(connect(place).setDelay(*delay_ms)); });
+
+  CLI::App* view = kagami.add_subcommand("view", "Show another view");
+  const auto number = std::make_shared<std::uint32_t>(0);
+  view->add_option("VIEW", *number, "from 1, along the arc")->required();
+  view->callback([&place, number] { expectDone(connect(place).setView(*number)); });
+
+  CLI::App* target = kagami.add_subcommand("target", "Set the point that stays in the centre");
+  const auto target_m = std::make_shared<std::vector<double>>();
+  target->add_option("X Y Z", *target_m, "metres in the rig frame, +Z up")
+      ->required()
+      ->expected(3)
+      ->delimiter(',');
+  target->callback([&place, target_m] {
+    expectDone(connect(place).setTarget({(*target_m)[0], (*target_m)[1], (*target_m)[2]}));
+  });
+
+  kagami.add_subcommand("freeze", "Stop at the shown moment; again: go on")->callback([&place] {
+    expectDone(connect(place).freeze());
+  });
+  kagami.add_subcommand("sweep", "Walk through all views of the stopped moment")
+      ->callback([&place] { expectDone(connect(place).sweep()); });
+}
+
+}  // namespace appliance

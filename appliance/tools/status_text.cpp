@@ -1,0 +1,53 @@
+#include "appliance/tools/status_text.h"
+
+#include <array>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+namespace appliance {
+
+std::expected<std::string, std::string> statusText(const std::string& json) {
+  const auto status = nlohmann::json::parse(json, nullptr, false);
+  try {
+    std::array<char, 512> head{};
+    const int view = status.at("view_wanted").get<int>();
+    const int shown = status.at("view_shown").get<int>();
+    const std::string substitute =
+        view == shown ? "" : " (view " + std::to_string(shown) + " shown instead)";
+    (void)std::snprintf(
+        head.data(), head.size(),
+        "mode     %s, %.3f s behind live, %.1f s stored\n"
+        "view     %d of %zu%s\n"
+        "target   %.3f %.3f %.3f m\n"
+        "shown    %.1f frame sets a second, by %s\n"
+        "frames   %llu triggers, %llu frames lost, %llu incomplete\n",
+        status.at("mode").get<std::string>().c_str(), status.at("delay_ms").get<double>() / 1e3,
+        status.at("history_ms").get<double>() / 1e3, view, status.at("cameras").size(),
+        substitute.c_str(), status.at("target_m").at(0).get<double>(),
+        status.at("target_m").at(1).get<double>(), status.at("target_m").at(2).get<double>(),
+        status.at("shown_hz").get<double>(), status.at("renderer").get<std::string>().c_str(),
+        status.at("triggers").get<unsigned long long>(),
+        status.at("frames_lost").get<unsigned long long>(),
+        status.at("frames_incomplete").get<unsigned long long>());
+    std::string text = head.data();
+    int number = 0;
+    for (const auto& camera : status.at("cameras")) {
+      ++number;
+      const auto state = camera.at("state").get<std::string>();
+      const auto lost = camera.at("frames_lost").get<std::uint64_t>();
+      const auto incomplete = camera.at("frames_incomplete").get<std::uint64_t>();
+      if (state == "streaming" && lost == 0 && incomplete == 0) continue;
+      text += "camera " + std::to_string(number) + " (" + camera.at("name").get<std::string>() +
+              "): " + state + ", " + std::to_string(lost) + " lost, " + std::to_string(incomplete) +
+              " incomplete\n";
+    }
+    for (const auto& line : status.at("degraded"))
+      text += "degraded: " + line.get<std::string>() + "\n";
+    return text;
+  } catch (const nlohmann::json::exception&) {
+    return std::unexpected("kagamid's status cannot be read: is kagami of the same version?");
+  }
+}
+
+}  // namespace appliance
