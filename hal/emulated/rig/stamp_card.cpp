@@ -24,11 +24,11 @@ std::vector<std::uint8_t> drawGlyph(char character) {
   cv::Mat glyph(kGlyphHeightPx, kGlyphWidthPx, CV_8UC1, cv::Scalar(kWhite));
   const std::string text(1, character);
   constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
-  constexpr double kScale = 0.75;
+  constexpr double kScale = 0.7;
   int baseline = 0;
-  const cv::Size size = cv::getTextSize(text, kFont, kScale, 1, &baseline);
+  const cv::Size size = cv::getTextSize(text, kFont, kScale, 2, &baseline);
   const cv::Point at((kGlyphWidthPx - size.width) / 2, (kGlyphHeightPx + size.height) / 2);
-  cv::putText(glyph, text, at, kFont, kScale, cv::Scalar(kBlack), 1, cv::LINE_AA);
+  cv::putText(glyph, text, at, kFont, kScale, cv::Scalar(kBlack), 2, cv::LINE_AA);
   return {glyph.datastart, glyph.dataend};
 }
 

@@ -1,5 +1,9 @@
 #include "hal/emulated/rig/stamp_scene.h"
 
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
 #include "hal/emulated/rig/arc_rig.h"
 #include "hal/emulated/rig/hall.h"
 
@@ -20,17 +24,26 @@ StampScene::StampScene(RigModel rig, SizePx size)
       size_(size),
       layout_(StampLayout::of(static_cast<int>(size.width), static_cast<int>(size.height))),
       views_(rig_.cameras.size()) {
-  const std::size_t band_at = static_cast<std::size_t>(layout_.top_px) * size.width;
-  const std::size_t band_bytes = std::size_t{StampLayout::kCardHeightPx} * size.width;
-  for (std::size_t i = 0; i < views_.size(); ++i) {
-    View& view = views_[i];
-    view.hall = drawHall(rig_.cameras[i]);
-    const auto band = std::span(view.hall).subspan(band_at, band_bytes);
-    for (auto& copy : view.bands) {
-      copy.assign(band.begin(), band.end());
-      card_.paintFrame(&copy[static_cast<std::size_t>(layout_.left_px)], size.width,
-                       static_cast<std::uint8_t>(i));
-    }
+  // Drawing takes a fraction of a second per camera: every core takes the next one.
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::jthread> painters;
+  for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
+    painters.emplace_back([&] {
+      for (std::size_t camera = next++; camera < views_.size(); camera = next++) draw(camera);
+    });
+  }
+}
+
+void StampScene::draw(std::size_t camera) {
+  const std::size_t band_at = static_cast<std::size_t>(layout_.top_px) * size_.width;
+  const std::size_t band_bytes = std::size_t{StampLayout::kCardHeightPx} * size_.width;
+  View& view = views_[camera];
+  view.hall = drawHall(rig_.cameras[camera]);
+  const auto band = std::span(view.hall).subspan(band_at, band_bytes);
+  for (auto& copy : view.bands) {
+    copy.assign(band.begin(), band.end());
+    card_.paintFrame(&copy[static_cast<std::size_t>(layout_.left_px)], size_.width,
+                     static_cast<std::uint8_t>(camera));
   }
 }
 

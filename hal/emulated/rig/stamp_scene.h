@@ -35,6 +35,7 @@ class StampScene final : public Scene {
   };
 
   StampScene(RigModel rig, SizePx size);
+  void draw(std::size_t camera);
 
   RigModel rig_;
   SizePx size_;
