@@ -29,7 +29,8 @@ std::set<std::string> namesInTable(const SourceFile& page) {
   return names;
 }
 
-/// The families that a file gives to threads: as the name of an rt::ThreadConfig, or to the kernel.
+/// The families that a file gives to threads: as the name of an rt::ThreadConfig, by a function
+/// that starts or names a thread, or to the kernel.
 std::set<std::string> namesInCode(const SourceFile& file) {
   std::string text;
   for (const auto& line : file.lines) text += line + "\n";
@@ -37,9 +38,11 @@ std::set<std::string> namesInCode(const SourceFile& file) {
       R"re(hreadConfig\s*\w*\s*[({]\s*(?:\.name\s*=\s*)?"([a-z]+[%0-9a-z]*)")re");
   static const std::regex kStart(
       R"re(Thread::start\s*\(\s*\{\s*(?:\.name\s*=\s*)?"([a-z]+[%0-9a-z]*)")re");
+  static const std::regex kHelper(R"re(startThread\s*\(\s*\w+\s*,\s*"([a-z]+)")re");
+  static const std::regex kNumbered(R"re(ThreadName\([^"}]*\{[^"}]*"([a-z]+%[0-9a-z]*)")re");
   static const std::regex kKernel(R"re(pthread_setname_np\s*\([^;"]*"([a-z]+[%0-9a-z]*)")re");
   std::set<std::string> names;
-  for (const auto* pattern : {&kConfig, &kStart, &kKernel}) {
+  for (const auto* pattern : {&kConfig, &kStart, &kHelper, &kNumbered, &kKernel}) {
     for (std::sregex_iterator it(text.begin(), text.end(), *pattern), end; it != end; ++it) {
       names.insert(familyOf((*it)[1]));
     }
@@ -64,8 +67,11 @@ TEST(ThreadNames, AreReadFromTheCode) {
       namesInCode({.path = "a.cpp",
                    .lines = {"const rt::ThreadConfig config{.name = \"trigger\",",
                              "auto t = rt::Thread::start({.name = \"render\", .priority = 60}, f);",
+                             "startThread(panel_thread_, \"panel\", how, body);",
+                             "std::string receiveThreadName(std::size_t camera) {",
+                             "  std::snprintf(name, sizeof name, \"recv%02zu\", camera);",
                              "pthread_setname_np(pthread_self(), \"trace\");"}}),
-      ElementsAre("render", "trace", "trigger"));
+      ElementsAre("panel", "recv", "render", "trace", "trigger"));
   EXPECT_THAT(namesInCode({.path = "a.cpp",
                            .lines = {"void open(const rt::ThreadConfig& receive) {",
                                      "  if (backend == \"aravis\") camera.name = \"left\";"}}),
