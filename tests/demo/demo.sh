@@ -226,20 +226,46 @@ stop_programs() {  # RUN-FOLDER
     broken kagami-emulator "$1/emulator.log" "it did not end well (exit status $rc)"
 }
 
-# The film is made from what was recorded, whatever the report's verdict.
+# What makes a run bad, a line each; nothing for a good one.
+faults_of() {  # REPORT
+  awk '
+    function number() { sub(/.*: */, ""); sub(/,$/, ""); return $0 + 0 }
+    /^  "valid": true/ { valid = 1 }
+    /^  "after_warm_up"/ { judged = 1 }
+    /^  }/ { judged = 0 }
+    judged && /"frames_expected"/ { expected = number() }
+    judged && /"frames_lost"/ { lost = number() }
+    judged && /"frames_incomplete"/ { incomplete = number() }
+    END {
+      if (!valid) print "the run is not valid, the table says why"
+      if (expected == 0) print "no frame was expected after the warm-up: run longer (--seconds)"
+      if (lost > 0) print lost " frames lost"
+      if (incomplete > 0) print incomplete " frames incomplete"
+    }' "$1"
+}
+
+# Report and film are made from what was recorded, whatever the verdict.
 conclude() {  # NAME FOLDER
   run=$2/run
-  good=yes
-  "$bin/kagami" report "$run/trace.jsonl" --wire-log "$run/wire.csv" \
-    --emulator "$run/emulator.json" --json "$2/report.json" > "$2/report.txt" || good=
-  [ -s "$2/report.txt" ] || fail "kagami report failed on $run/trace.jsonl (above)"
+  "$bin/kagami" report --trace "$run/trace.jsonl" --wire-log "$run/wire.csv" \
+    --emulator-stats "$run/emulator.json" --out "$2/report.json" --table > "$2/report.txt" ||
+    fail "kagami report failed (above) on $run/trace.jsonl"
   cat "$2/report.txt"
   say "$1: making the film"
-  "$bin/kagami" film "$run/pictures" --out "$2" > "$run/film.log" 2>&1 ||
+  "$bin/kagami" film --record "$run/pictures" --out "$2/demo.mp4" \
+    --contact-sheet "$2/contact-sheet.png" > "$run/film.log" 2>&1 ||
     broken 'kagami film' "$run/film.log" "the pictures are in $run/pictures"
-  say "$1: film, stills, contact sheet and report are in $2"
-  if [ -z "$good" ]; then
-    say "$1: NOT GOOD, the report says why" >&2
+  for mode in live delayed frozen sweep; do
+    rm -f "$2/$mode.png"
+    still=$run/pictures/$mode.png
+    # A sweep leaves one still of each view it passed.
+    [ "$mode" != sweep ] || still=$(ls "$run"/pictures/view*.png 2>/dev/null | sed -n 2p)
+    [ ! -f "$still" ] || cp "$still" "$2/$mode.png"
+  done
+  say "$1: demo.mp4, stills, contact-sheet.png, report.json and report.txt are in $2"
+  faults=$(faults_of "$2/report.json")
+  if [ -n "$faults" ]; then
+    printf '%s\n' "$faults" | sed "s/^/demo: $1: NOT GOOD: /" >&2
     verdict=1
   fi
 }
