@@ -1,10 +1,10 @@
 #include "rt/doorbell.h"
 
 #include <cerrno>
+#include <ctime>
 
 #include <linux/futex.h>
 #include <sys/syscall.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "rt/section.h"

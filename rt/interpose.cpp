@@ -2,15 +2,15 @@
 // build, so that a call inside a real-time section aborts where it happens.
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 
 #include <dlfcn.h>
-#include <errno.h>
 #include <execinfo.h>
 #include <pthread.h>
-#include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "rt/section_check.h"

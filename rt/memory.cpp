@@ -101,6 +101,19 @@ int prefaultChunk(std::span<std::byte> chunk) {
   return 0;
 }
 
+/// Up to @p count threads that run @p work; fewer where the system makes no more.
+template <typename Work>
+std::vector<std::jthread> startHelpers(unsigned count, const Work& work) {
+  std::vector<std::jthread> helpers;
+  helpers.reserve(count);
+  try {
+    for (unsigned i = 0; i < count; ++i) helpers.emplace_back(work);
+  } catch (const std::system_error&) {
+    return helpers;
+  }
+  return helpers;
+}
+
 /// Zeroing pages is bound by one CPU, so several share the work.
 int prefault(std::span<std::byte> memory) {
   std::atomic<std::size_t> next{0};
@@ -115,15 +128,10 @@ int prefault(std::span<std::byte> memory) {
       }
     }
   };
-  std::vector<std::jthread> helpers;
-  const unsigned threads = std::min(std::thread::hardware_concurrency(), kMaxPrefaultThreads);
-  try {
-    for (unsigned i = 1; i < threads; ++i) helpers.emplace_back(work);
-  } catch (const std::system_error&) {
-    // fewer helpers: only slower
-  }
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxPrefaultThreads);
+  auto helpers = startHelpers(threads - 1, work);
   work();
-  helpers.clear();
+  helpers.clear();  // joins
   return error.load();
 }
 

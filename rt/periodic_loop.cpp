@@ -1,8 +1,7 @@
 #include "rt/periodic_loop.h"
 
 #include <cerrno>
-
-#include <time.h>
+#include <ctime>
 
 #include "rt/section.h"
 

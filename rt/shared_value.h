@@ -51,7 +51,7 @@ class SharedValue {
     if ((sequence & 1U) != 0 || sequence_.load(std::memory_order_relaxed) != sequence) {
       return std::nullopt;
     }
-    T value;
+    T value{};
     std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
     return value;
   }

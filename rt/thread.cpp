@@ -18,7 +18,8 @@ namespace rt {
 namespace {
 
 constexpr std::size_t kMaxNameLength = 15;
-constexpr std::size_t kStackReserveBytes = 256 * 1024;  // what prefaulting must leave alone
+constexpr std::size_t kStackReserveBytes =
+    std::size_t{256} * 1024;  // what prefaulting must leave alone
 
 Result<int> kernelPolicy(SchedPolicy policy) {
   switch (policy) {

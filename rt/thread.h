@@ -28,7 +28,7 @@ struct ThreadConfig {
   SchedPolicy policy = SchedPolicy::kOther;
   int priority = 0;            ///< 1 to 99 for kFifo and kRoundRobin, 0 for kOther
   std::vector<int> cpus = {};  ///< CPUs it may run on; empty: all that the process may use
-  std::size_t prefault_stack_bytes = 64 * 1024;  ///< touched before the body runs
+  std::size_t prefault_stack_bytes = std::size_t{64} * 1024;  ///< touched before the body runs
 };
 
 /// What the system granted. A thread that was refused something runs all the same,
@@ -57,7 +57,7 @@ struct ThreadGrant {
 ///          system makes no more threads. What was not permitted is in grant().
 class Thread {
  public:
-  static constexpr std::size_t kStackBytes = 2 * 1024 * 1024;
+  static constexpr std::size_t kStackBytes = std::size_t{2} * 1024 * 1024;
 
   /// Returns when the thread runs with what it was granted.
   [[nodiscard]] static Result<Thread> start(ThreadConfig config,

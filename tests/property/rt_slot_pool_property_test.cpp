@@ -172,6 +172,7 @@ TEST(SlotPoolConcurrency, KeepsPinnedContentUnchangedWhileTheWriterNeverWaits) {
     int refused = 0;
     {
       std::vector<std::jthread> readers;
+      readers.reserve(kReaders);
       for (std::uint32_t r = 0; r < kReaders; ++r) {
         readers.emplace_back([&, r] { changed[r] = history.read(round * 100 + r); });
       }

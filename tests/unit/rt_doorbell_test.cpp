@@ -69,6 +69,7 @@ TEST(Doorbell, MakesVisibleWhatWasWrittenBeforeTheRing) {
   rt::Doorbell bell;
   std::vector<rt::SpscRing<std::uint32_t, 16>> rings(kProducers);
   std::vector<std::jthread> producers;
+  producers.reserve(kProducers);
   for (std::size_t p = 0; p < kProducers; ++p) {
     producers.emplace_back([&, p] {
       for (std::uint32_t i = 0; i < kPerProducer; ++i) {

@@ -14,6 +14,7 @@ enum class Kind : std::uint8_t { kOverrun = 1, kFrameLost = 2 };
 
 std::vector<std::int64_t> firstArgs(const std::vector<rt::Event>& events) {
   std::vector<std::int64_t> args;
+  args.reserve(events.size());
   for (const auto& event : events) args.push_back(event.args[0]);
   return args;
 }
