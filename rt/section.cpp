@@ -4,6 +4,8 @@
 
 #include "rt/section_check.h"
 
+#ifdef KAGAMI_RTCHECK
+
 namespace rt {
 namespace {
 
@@ -29,3 +31,5 @@ ScopedRtExemption::~ScopedRtExemption() {
 }
 
 }  // namespace rt
+
+#endif

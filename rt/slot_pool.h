@@ -84,8 +84,9 @@ class SlotPin {
   SlotPin(SlotPin&& other) noexcept
       : state_(std::exchange(other.state_, nullptr)), slot_(other.slot_) {}
   SlotPin& operator=(SlotPin&& other) noexcept {
-    std::swap(state_, other.state_);
-    std::swap(slot_, other.slot_);
+    SlotPin taken(std::move(other));  // drops what this held on return
+    std::swap(state_, taken.state_);
+    std::swap(slot_, taken.slot_);
     return *this;
   }
   ~SlotPin() {

@@ -11,16 +11,22 @@ using rt::PeriodicSchedule;
 constexpr auto kFirst = fromNs(1'000'000'000);
 constexpr rt::Nanoseconds kPeriod = 25ms;
 
+/// The turn that must be due at @p now.
+rt::PeriodicTick mustWake(PeriodicSchedule& schedule, rt::Timestamp now) {
+  const auto tick = schedule.wake(now);
+  EXPECT_TRUE(tick.has_value());
+  return tick.value_or(rt::PeriodicTick{});
+}
+
 TEST(PeriodicSchedule, RunsOneTurnPerDeadlineOnAGridThatDoesNotDrift) {
   PeriodicSchedule schedule(kFirst, kPeriod);
   for (std::uint64_t i = 0; i < 1000; ++i) {
     ASSERT_EQ(schedule.deadline(), kFirst + i * kPeriod);
-    const auto tick = schedule.wake(schedule.deadline() + 80us);
-    ASSERT_TRUE(tick.has_value());
-    EXPECT_EQ(tick->index, i);
-    EXPECT_EQ(tick->deadline, kFirst + i * kPeriod);
-    EXPECT_EQ(tick->lateness, 80us);
-    EXPECT_EQ(tick->missed, 0u);
+    const auto tick = mustWake(schedule, schedule.deadline() + 80us);
+    EXPECT_EQ(tick.index, i);
+    EXPECT_EQ(tick.deadline, kFirst + i * kPeriod);
+    EXPECT_EQ(tick.lateness, 80us);
+    EXPECT_EQ(tick.missed, 0u);
   }
 }
 
@@ -33,18 +39,16 @@ TEST(PeriodicSchedule, GoesBackToSleepWhenWokenEarly) {
 
 TEST(PeriodicSchedule, SkipsAndCountsMissedDeadlinesInsteadOfBursting) {
   PeriodicSchedule schedule(kFirst, kPeriod);
-  const auto late = schedule.wake(kFirst + 3 * kPeriod + 1ms);
-  ASSERT_TRUE(late.has_value());
-  EXPECT_EQ(late->index, 3u);
-  EXPECT_EQ(late->deadline, kFirst + 3 * kPeriod);
-  EXPECT_EQ(late->lateness, 1ms);
-  EXPECT_EQ(late->missed, 3u);
+  const auto late = mustWake(schedule, kFirst + 3 * kPeriod + 1ms);
+  EXPECT_EQ(late.index, 3u);
+  EXPECT_EQ(late.deadline, kFirst + 3 * kPeriod);
+  EXPECT_EQ(late.lateness, 1ms);
+  EXPECT_EQ(late.missed, 3u);
   EXPECT_FALSE(schedule.wake(kFirst + 3 * kPeriod + 2ms).has_value());  // no second turn
 
-  const auto next = schedule.wake(kFirst + 4 * kPeriod);
-  ASSERT_TRUE(next.has_value());
-  EXPECT_EQ(next->index, 4u);
-  EXPECT_EQ(next->missed, 0u);
+  const auto next = mustWake(schedule, kFirst + 4 * kPeriod);
+  EXPECT_EQ(next.index, 4u);
+  EXPECT_EQ(next.missed, 0u);
   EXPECT_EQ(schedule.missed(), 3u);
 }
 
@@ -54,9 +58,8 @@ TEST(PeriodicSchedule, GivesUpADeadlineBeyondItsLatestLateness) {
   EXPECT_EQ(schedule.deadline(), kFirst + kPeriod);
   EXPECT_EQ(schedule.missed(), 1u);
 
-  const auto next = schedule.wake(kFirst + kPeriod + 2ms);
-  ASSERT_TRUE(next.has_value());
-  EXPECT_EQ(next->missed, 1u);  // the turn knows what was lost before it
+  const auto next = mustWake(schedule, kFirst + kPeriod + 2ms);
+  EXPECT_EQ(next.missed, 1u);  // the turn knows what was lost before it
 }
 
 TEST(PeriodicSchedule, NudgeMovesAllComingDeadlines) {

@@ -6,6 +6,13 @@
 
 namespace {
 
+/// A slot that must be there; an index out of range if not.
+std::uint32_t mustAcquire(rt::SlotPool& pool) {
+  const auto slot = pool.tryAcquire();
+  EXPECT_TRUE(slot.has_value());
+  return slot.value_or(pool.size());
+}
+
 TEST(SlotState, IsFreeUntilPublishedAndAgainWhenRetired) {
   rt::SlotState state;
   EXPECT_TRUE(state.isFree());
@@ -53,7 +60,7 @@ TEST(SlotState, RefusesMorePinsThanItCanCountInsteadOfOverflowing) {
 TEST(SlotPool, HandsOutEverySlotOnceAndThenRefuses) {
   rt::SlotPool pool(4);
   std::set<std::uint32_t> slots;
-  for (int i = 0; i < 4; ++i) slots.insert(pool.tryAcquire().value());
+  for (int i = 0; i < 4; ++i) slots.insert(mustAcquire(pool));
   EXPECT_EQ(slots, (std::set<std::uint32_t>{0, 1, 2, 3}));
   EXPECT_FALSE(pool.tryAcquire().has_value());
   pool.giveBack(2);
@@ -62,12 +69,11 @@ TEST(SlotPool, HandsOutEverySlotOnceAndThenRefuses) {
 
 TEST(SlotPool, ParksAPinnedSlotAndCollectsItOnceUnpinned) {
   rt::SlotPool pool(1);
-  const auto slot = pool.tryAcquire().value();
+  const auto slot = mustAcquire(pool);
   pool.publish(slot, 1);
   {
     const auto pin = pool.tryPin(slot, 1);
-    ASSERT_TRUE(pin.has_value());
-    EXPECT_EQ(pin->slot(), slot);
+    ASSERT_TRUE(pin && pin->slot() == slot);
     pool.retire(slot);
     EXPECT_EQ(pool.parkedSlots(), 1u);
     EXPECT_FALSE(pool.tryAcquire().has_value());  // refused at once, not waited for
@@ -79,19 +85,19 @@ TEST(SlotPool, ParksAPinnedSlotAndCollectsItOnceUnpinned) {
 
 TEST(SlotPin, UnpinsOnceHoweverOftenItMoves) {
   rt::SlotPool pool(2);
-  const auto first = pool.tryAcquire().value();
-  const auto second = pool.tryAcquire().value();
+  const auto first = mustAcquire(pool);
+  const auto second = mustAcquire(pool);
   pool.publish(first, 1);
   pool.publish(second, 2);
   {
     auto shown = pool.tryPin(first, 1);
+    auto held = std::move(shown);
     auto next = pool.tryPin(second, 2);
-    ASSERT_TRUE(shown && next);
-    rt::SlotPin held = std::move(*shown);
-    held = std::move(*next);
-    EXPECT_EQ(held.slot(), second);
+    held = std::move(next);  // drops the first at once
+    ASSERT_TRUE(held && held->slot() == second);
+    pool.retire(first);
+    EXPECT_EQ(pool.parkedSlots(), 0u);
   }
-  pool.retire(first);
   pool.retire(second);
   EXPECT_EQ(pool.freeSlots(), 2u);
 }

@@ -139,11 +139,10 @@ TEST(Thread, MovesWithItsRunningBody) {
 
 TEST(Thread, ConfiguresThreadsThatALibraryMade) {
   rt::TaskInfo seen;
-  std::optional<rt::ThreadGrant> grant;
+  rt::Result<rt::ThreadGrant> grant;
   std::jthread library([&] {
-    const auto applied = rt::applyToCurrentThread(
+    grant = rt::applyToCurrentThread(
         {.name = "adopted", .policy = SchedPolicy::kRoundRobin, .priority = 1});
-    if (applied) grant = *applied;
     seen = self();
   });
   library.join();
