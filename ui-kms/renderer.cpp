@@ -4,6 +4,8 @@
 #include <cstring>
 #include <vector>
 
+#include <opencv2/core/utility.hpp>
+
 #include "rt/clock.h"
 
 namespace ui {
@@ -17,6 +19,8 @@ std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
   if (site == DemosaicSite::kAuto) {
     site = renderer->context_->software() ? DemosaicSite::kCpu : DemosaicSite::kGpu;
   }
+  // OpenCV's helpers have no real-time priority; the render thread must not wait for them.
+  if (site == DemosaicSite::kCpu) cv::setNumThreads(1);
   auto source = SourceTexture::create(site);
   if (!source) return std::unexpected(source.error());
   renderer->source_ = std::move(*source);

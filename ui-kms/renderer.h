@@ -29,7 +29,8 @@ struct RendererConfig {
 /// From a plan and a status line to a finished picture in a render target; what every display
 /// of this folder draws with.
 ///
-/// Threads  create() on a SCHED_OTHER thread; then one caller, which binds the context.
+/// Threads  create() on a SCHED_OTHER thread; then one caller, which binds the context. With the
+///          demosaicing on the CPU it ends OpenCV's own threading in this process.
 class Renderer {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<Renderer>, std::string> create(
