@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "hal/emulated/rig/convert_pose2sim.h"
+#include "hal/emulated/rig/recording_scene.h"
 #include "hal/emulated/rig/rig.h"
 #include "hal/emulated/rig/rig_file.h"
 #include "hal/emulated/rig/run_record.h"
@@ -24,6 +26,9 @@ struct Arguments {
   std::string stats;
   std::string rig_out;
   emulator::RigOptions rig;
+  std::string convert_kind;
+  std::string convert_from;
+  std::string convert_to;
 };
 
 int fail(const std::string& message) {
@@ -45,11 +50,13 @@ std::expected<emulator::SizePx, std::string> parseSize(const std::string& text) 
 }
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--cameras", a.cameras, "cameras in the stamp scene")
+  app.add_option("--cameras", a.cameras, "cameras in the stamp scene; a recording has its own")
       ->check(CLI::Range(1, 250))
       ->capture_default_str();
   app.add_option("--size", a.size, "their size in pixels")->capture_default_str();
-  app.add_option("--scene", a.scene, "what they see: stamp")->capture_default_str();
+  app.add_option("--scene", a.scene,
+                 "what they see: stamp, or a folder with rig.toml and recordings")
+      ->capture_default_str();
   app.add_option("--first-address", a.first_address, "camera i answers on this address + i")
       ->capture_default_str();
   app.add_option("--wire-port", a.rig.wire_port, "UDP port of the trigger wire on 127.0.0.1")
@@ -80,7 +87,30 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--seed", a.rig.seed, "of the losses")->capture_default_str();
 }
 
-int run(Arguments& a) {
+using ScenePointer = std::unique_ptr<emulator::Scene>;
+
+std::expected<ScenePointer, std::string> openScene(const Arguments& a) {
+  if (a.scene != "stamp") {
+    if (!a.rig_out.empty()) {
+      return std::unexpected("--rig-out is for the stamp scene; this one has its own rig.toml");
+    }
+    auto recording = emulator::RecordingScene::open(a.scene);
+    if (!recording) return std::unexpected(recording.error());
+    return std::make_unique<emulator::RecordingScene>(std::move(*recording));
+  }
+  const auto size = parseSize(a.size);
+  if (!size) return std::unexpected(size.error());
+  auto stamp = emulator::StampScene::make(a.cameras, *size);
+  if (!stamp) return std::unexpected("--size " + a.size + ": " + stamp.error());
+  if (!a.rig_out.empty()) {
+    if (auto written = emulator::writeRigFile(a.rig_out, stamp->rig()); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  return std::make_unique<emulator::StampScene>(std::move(*stamp));
+}
+
+int serve(Arguments& a) {
   const auto address = emulator::parseAddress(a.first_address);
   if (!address) return fail("--first-address " + address.error());
   a.rig.first_address = *address;
@@ -88,16 +118,9 @@ int run(Arguments& a) {
   if (a.seconds > 0) {
     a.rig.run_for = rt::Nanoseconds{static_cast<std::int64_t>(a.seconds * 1e9)};
   }
-  const auto size = parseSize(a.size);
-  if (!size) return fail(size.error());
-  auto scene = emulator::StampScene::make(a.cameras, *size);
+  const auto scene = openScene(a);
   if (!scene) return fail(scene.error());
-  if (!a.rig_out.empty()) {
-    if (auto written = emulator::writeRigFile(a.rig_out, scene->rig()); !written) {
-      return fail(written.error());
-    }
-  }
-  auto rig = emulator::Rig::open(*scene, a.rig);
+  auto rig = emulator::Rig::open(**scene, a.rig);
   if (!rig) return fail(rig.error());
   std::puts("ready");
   std::fflush(stdout);
@@ -107,12 +130,20 @@ int run(Arguments& a) {
       emulator::invalidReason(rig->counters(), rig->lateness(), rig->triggerPeriod());
   if (!reason.empty()) std::fprintf(stderr, "kagami-emulator: run INVALID: %s\n", reason.c_str());
   if (!a.stats.empty()) {
-    if (auto written = emulator::writeStatistics(a.stats, scene->cameraCount(), rig->counters(),
+    if (auto written = emulator::writeStatistics(a.stats, (*scene)->cameraCount(), rig->counters(),
                                                  rig->lateness(), rig->triggerPeriod());
         !written) {
       return fail(written.error());
     }
   }
+  return 0;
+}
+
+int convert(const Arguments& a) {
+  const auto rig = emulator::convertPose2sim(a.convert_from, a.convert_to);
+  if (!rig) return fail(rig.error());
+  std::printf("%s: %zu cameras, target_m [%.3f, %.3f, %.3f]\n", a.convert_to.c_str(),
+              rig->cameras.size(), rig->target_m[0], rig->target_m[1], rig->target_m[2]);
   return 0;
 }
 
@@ -123,6 +154,12 @@ int main(int argc, char** argv) {
   CLI::App app("Emulates GigE Vision cameras and the wire that triggers them.");
   Arguments arguments;
   declare(app, arguments);
+  CLI::App* converter = app.add_subcommand("convert", "make a scene folder of other people's data");
+  converter->add_option("kind", arguments.convert_kind, "pose2sim")
+      ->required()
+      ->check(CLI::IsMember({"pose2sim"}));
+  converter->add_option("source", arguments.convert_from, "the data")->required();
+  converter->add_option("destination", arguments.convert_to, "the folder to make")->required();
   CLI11_PARSE(app, argc, argv);
-  return run(arguments);
+  return *converter ? convert(arguments) : serve(arguments);
 }

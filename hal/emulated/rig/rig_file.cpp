@@ -77,6 +77,10 @@ std::expected<void, std::string> writeRigFile(const std::filesystem::path& path,
 }
 
 std::expected<RigModel, std::string> readRigFile(const std::filesystem::path& path) {
+  std::error_code error_code;
+  if (!std::filesystem::exists(path, error_code)) {
+    return std::unexpected("there is no " + path.string() + ": the folder is no scene");
+  }
   toml::table root;
   try {
     root = toml::parse_file(path.string());
