@@ -22,6 +22,9 @@ constexpr float kInk = 235;
 void write(cv::Mat& tile, GlyphAtlas& atlas, const std::string& text, float x_px, float base_px) {
   std::vector<PlacedGlyph> line;
   static_cast<void>(atlas.shape(text, line));
+  // OpenCV has no Mat of constant pixels; these are only read.
+  const cv::Mat letters(static_cast<int>(atlas.heightPx()), static_cast<int>(atlas.widthPx()),
+                        CV_8UC1, const_cast<std::uint8_t*>(atlas.pixels().data()));
   for (const PlacedGlyph& glyph : line) {
     const int left = static_cast<int>(std::lround(x_px + glyph.x_px));
     const int top = static_cast<int>(std::lround(base_px + glyph.y_px));
@@ -29,11 +32,8 @@ void write(cv::Mat& tile, GlyphAtlas& atlas, const std::string& text, float x_px
       for (int x = 0; x < static_cast<int>(glyph.width_px); ++x) {
         const cv::Point at(left + x, top + y);
         if (!at.inside({0, 0, tile.cols, tile.rows})) continue;
-        const auto row = static_cast<std::size_t>(glyph.atlas_y + y);
-        const float cover =
-            static_cast<float>(
-                atlas.pixels()[row * atlas.widthPx() + glyph.atlas_x + static_cast<unsigned>(x)]) /
-            255.0F;
+        const cv::Point from(glyph.atlas_x + x, glyph.atlas_y + y);
+        const float cover = static_cast<float>(letters.at<uchar>(from)) / 255.0F;
         for (uchar& channel : tile.at<cv::Vec3b>(at).val) {
           channel =
               cv::saturate_cast<uchar>(static_cast<float>(channel) * (1 - cover) + kInk * cover);

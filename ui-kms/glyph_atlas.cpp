@@ -131,7 +131,8 @@ void GlyphAtlas::rasterise(std::uint32_t em_px) {
   }
   height_px_ = static_cast<std::uint32_t>(pixels_.size() / width_px_);
   const Glyph* capital = find(FT_Get_Char_Index(face, 'H'));
-  cap_height_px_ = capital != nullptr ? capital->height_px : 0.7F * static_cast<float>(em_px);
+  cap_height_px_ = capital != nullptr ? static_cast<float>(capital->height_px)
+                                      : 0.7F * static_cast<float>(em_px);
 }
 
 const GlyphAtlas::Glyph* GlyphAtlas::find(std::uint32_t id) const {
@@ -158,12 +159,13 @@ float GlyphAtlas::shape(std::string_view text, std::vector<PlacedGlyph>& line) {
     const Glyph* glyph = find(infos[i].codepoint);
     if (glyph == nullptr) glyph = find(0);
     if (glyph != nullptr && glyph->width_px != 0) {
-      line.push_back({.x_px = pen_px + from26Dot6(positions[i].x_offset) + glyph->left_px,
-                      .y_px = -from26Dot6(positions[i].y_offset) - glyph->top_px,
-                      .width_px = static_cast<float>(glyph->width_px),
-                      .height_px = static_cast<float>(glyph->height_px),
-                      .atlas_x = glyph->atlas_x,
-                      .atlas_y = glyph->atlas_y});
+      line.push_back(
+          {.x_px = pen_px + from26Dot6(positions[i].x_offset) + static_cast<float>(glyph->left_px),
+           .y_px = -from26Dot6(positions[i].y_offset) - static_cast<float>(glyph->top_px),
+           .width_px = static_cast<float>(glyph->width_px),
+           .height_px = static_cast<float>(glyph->height_px),
+           .atlas_x = glyph->atlas_x,
+           .atlas_y = glyph->atlas_y});
     }
     pen_px += from26Dot6(positions[i].x_advance);
   }

@@ -134,8 +134,8 @@ void StatusLinePass::layOut(const hal::StatusLine& status) {
     if (corners_.size() + kCornersPerQuad > corners_.capacity()) break;
     const float x_px = pen_px + glyph.x_px * scale;
     const float y_px = baseline_px + glyph.y_px * scale;
-    const float u = glyph.atlas_x / atlas_width_px;
-    const float v = glyph.atlas_y / atlas_height_px;
+    const float u = static_cast<float>(glyph.atlas_x) / atlas_width_px;
+    const float v = static_cast<float>(glyph.atlas_y) / atlas_height_px;
     addQuad(x_px, y_px, x_px + glyph.width_px * scale, y_px + glyph.height_px * scale, u, v,
             u + glyph.width_px / atlas_width_px, v + glyph.height_px / atlas_height_px);
   }
