@@ -48,6 +48,9 @@ std::expected<std::string, std::string> ControlClient::call(const char* method, 
         sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_NAME_HAS_NO_OWNER) != 0)
       return std::unexpected("kagamid is not running (no " + name_ + " on " + bus_name_ +
                              "): systemctl start kagamid");
+    if (sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_ACCESS_DENIED) != 0)
+      return std::unexpected(std::string(method) + " is not permitted on " + bus_name_ +
+                             ": be root, or join the group kagami");
     return std::unexpected(exchange.error.message != nullptr ? exchange.error.message
                                                              : std::strerror(-r));
   }
