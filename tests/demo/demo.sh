@@ -116,9 +116,9 @@ broken() {  # PROGRAM LOG ADVICE
 
 wait_for_line() {  # PID LOG PATTERN TENTHS: 1 when it did not come
   left=$4
-  while ! grep -q "$3" "$2"; do
+  while ! grep -qs "$3" "$2"; do
     if [ "$left" = 0 ] || ended "$1"; then
-      grep -q "$3" "$2" || return 1
+      grep -qs "$3" "$2" || return 1
     fi
     sleep 0.1
     left=$((left - 1))
@@ -129,6 +129,7 @@ wait_for_line() {  # PID LOG PATTERN TENTHS: 1 when it did not come
 # The panel script in whole rounds over the run's seconds.
 panel_script() {
   awk -v seconds="$seconds" '
+    BEGIN { lines = 0 }
     $1 == "#" && $2 == "phase" { phase[lines] = 1; time[lines] = $3
                                  sub(/^# phase [0-9.]+ /, ""); text[lines++] = $0; next }
     /^#/ || NF == 0 { next }
