@@ -30,6 +30,7 @@ using namespace appliance;
 struct Options {
   std::string config_file = "/etc/kagami/kagamid.toml";
   std::vector<std::string> overrides;
+  std::vector<double> target_m;  // empty: the rig's
   bool check_config = false;
 };
 
@@ -43,6 +44,9 @@ std::expected<Site, std::string> loadSite(const Options& options) {
   if (!config) return std::unexpected(config.error());
   auto rig = loadRig(config->rig.file);
   if (!rig) return std::unexpected(rig.error());
+  if (!options.target_m.empty()) {
+    rig->target_m = {options.target_m[0], options.target_m[1], options.target_m[2]};
+  }
   if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
   return Site{std::move(*config), std::move(*rig)};
 }
@@ -133,6 +137,10 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config_file, "Configuration file")->capture_default_str();
   app.add_option("--set", options.overrides, "Override a key: --set display.zoom=1.5")
       ->type_name("SECTION.KEY=VALUE");
+  app.add_option("--target", options.target_m, "Point to show, rig frame, metres")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3);
   app.add_flag("--check-config", options.check_config, "Check configuration and rig, then end");
   app.set_version_flag("--version", KAGAMI_VERSION);
   CLI11_PARSE(app, argc, argv);

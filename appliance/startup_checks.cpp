@@ -16,6 +16,9 @@ std::expected<void, std::string> checkTogether(const Config& config, const Rig& 
                            config.rig.file + " describes " + std::to_string(rig.cameras.size()) +
                            ": give one address per [[camera]], in the same order");
   }
+  if (!rig.target_m.allFinite()) {
+    return std::unexpected("--target: three finite numbers are needed, in metres: 0,0,1");
+  }
   const double period_us = 1e6 / config.trigger.rate_hz;
   if (config.cameras.exposure_us >= period_us) {
     char line[160];

@@ -1,6 +1,7 @@
 #include "hal/aravis/aravis_camera.h"
 
 #include <atomic>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -163,10 +164,23 @@ void AravisCamera::deliver() {
   arv_stream_push_buffer(stream_.get(), ARV_BUFFER(g_object_ref(buffers_[next].get())));
 }
 
+/// Aravis would start a thread for USB cameras and look for them; ours are on the network.
+void useNetworkOnly() {
+  static const bool once = [] {
+    for (guint i = 0; i < arv_get_n_interfaces(); ++i) {
+      const std::string_view interface = arv_get_interface_id(i);
+      if (interface != "GigEVision") arv_disable_interface(interface.data());
+    }
+    return true;
+  }();
+  (void)once;
+}
+
 }  // namespace
 
 std::expected<std::unique_ptr<Camera>, std::string> openCamera(const CameraProfile& profile,
                                                                const rt::ThreadConfig& receive) {
+  useNetworkOnly();
   GlibError error;
   Ref<ArvCamera> camera{arv_camera_new(profile.address.c_str(), error.out())};
   if (!camera) {

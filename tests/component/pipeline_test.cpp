@@ -1,0 +1,198 @@
+// The real programs over real packets: emulated cameras on one side of the wire, kagamid on the
+// other. What was shown is read back from the pictures themselves.
+
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/child_process.h"
+#include "tests/support/shown_picture.h"
+#include "tests/support/thread_table.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr int kCameras = 4;
+
+/// One run of both programs with a scripted panel; everything they wrote is read back.
+class PipelineRun {
+ public:
+  explicit PipelineRun(const std::string& script, std::chrono::seconds length,
+                       std::vector<std::string> more = {}) {
+    std::ofstream(folder_ / "panel.txt") << script;
+    test::ChildProcess emulator(
+        {KAGAMI_EMULATOR, "--cameras", std::to_string(kCameras), "--size", "640x480",
+         "--first-address", "127.0.4.1", "--wire-port", "3994", "--rig-out", path("rig.toml"),
+         "--wire-log", path("wire.csv"), "--stats", path("stats.json")},
+        folder_ / "emulator.log");
+    if (!emulator.waitForOutput("ready", 30s)) {
+      ADD_FAILURE() << emulator.output();
+      return;
+    }
+    std::vector<std::string> command{
+        KAGAMID,
+        "--config",
+        KAGAMID_CONFIG,
+        "--set",
+        "rig.file=" + path("rig.toml"),
+        "--set",
+        R"(cameras.addresses=["127.0.4.1","127.0.4.2","127.0.4.3","127.0.4.4"])",
+        "--set",
+        "cameras.packet_size_bytes=1500",
+        "--set",
+        "trigger.wire_port=3994",
+        "--set",
+        "trigger.rate_hz=10",
+        "--set",
+        "history.sets=40",
+        "--set",
+        "display.refresh_hz=20",
+        "--set",
+        "panel.backend=scripted",
+        "--set",
+        "panel.script=" + path("panel.txt"),
+        "--set",
+        "record.directory=" + path("record"),
+        "--set",
+        "state.trace=" + path("trace.jsonl"),
+        "--set",
+        "control.bus=none"};
+    command.insert(command.end(), more.begin(), more.end());
+    test::ChildProcess daemon(command, folder_ / "kagamid.log");
+    if (!daemon.waitForOutput("running:", 60s)) {
+      ADD_FAILURE() << daemon.output();
+      return;
+    }
+    std::this_thread::sleep_for(length);
+    daemon.terminate();
+    daemon_exit = daemon.wait(60s).value_or(-1);
+    daemon_output = daemon.output();
+    emulator.terminate();
+    emulator_exit = emulator.wait(20s).value_or(-1);
+
+    std::ifstream trace(folder_ / "trace.jsonl");
+    for (std::string line; std::getline(trace, line);) {
+      json record = json::parse(line);
+      records[record["record"]].push_back(std::move(record));
+    }
+    pictures = test::readStills(folder_ / "record");
+  }
+
+  std::string path(const std::string& name) const { return folder_ / name; }
+
+  int daemon_exit = -1;
+  int emulator_exit = -1;
+  std::string daemon_output;
+  std::map<std::string, std::vector<json>> records;
+  std::vector<test::ShownPicture> pictures;  // the kept stills
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+const PipelineRun& throughAllModes() {
+  static const PipelineRun run(
+      "2.5 tap delay-more\n"
+      "4.5 tap freeze\n"
+      "5.5 tap sweep\n"
+      "7.5 tap live\n",
+      10s);
+  return run;
+}
+
+TEST(Pipeline, ShowsTheCameraAndTheTriggerThatItSaysItShows) {
+  const PipelineRun& run = throughAllModes();
+  ASSERT_EQ(run.daemon_exit, 0) << run.daemon_output;
+  ASSERT_GE(run.pictures.size(), 4U);
+  std::set<std::string> modes;
+  for (const test::ShownPicture& picture : run.pictures) {
+    const auto stamp = picture.readStamp({640, 480});
+    ASSERT_TRUE(stamp) << picture.name << ": the stamp cannot be read";
+    EXPECT_EQ(stamp->camera, picture.camera) << picture.name;
+    EXPECT_EQ(stamp->trigger, picture.trigger) << picture.name;
+    modes.insert(picture.mode);
+  }
+  EXPECT_THAT(modes, testing::UnorderedElementsAre("live", "delayed", "frozen", "sweep"));
+}
+
+TEST(Pipeline, StoresEveryFrameOfEveryTriggerUnderItsOwnTrigger) {
+  const PipelineRun& run = throughAllModes();
+  std::ifstream log(run.path("wire.csv"));
+  std::map<std::pair<int, std::uint64_t>, std::uint64_t> sent;  // camera, frame id -> trigger
+  std::string line;
+  std::getline(log, line);
+  while (std::getline(log, line)) {
+    int camera = 0;
+    unsigned long frame_id = 0;
+    unsigned long trigger = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%lu,%lu", &camera, &frame_id, &trigger), 3) << line;
+    sent[{camera, frame_id}] = trigger;
+  }
+  std::size_t stored = 0;
+  for (const json& frame : run.records.at("frame")) {
+    const std::uint64_t trigger = frame["trigger"];
+    if (trigger == 0) continue;
+    ++stored;
+    EXPECT_EQ((sent[{frame["camera"], frame["frame_id"]}]), trigger) << frame;
+  }
+  EXPECT_GT(stored, 0U);
+  EXPECT_EQ(stored, run.records.at("trigger").size() * kCameras) << "frames were lost";
+  EXPECT_EQ(run.records.at("summary").front()["frames_incomplete"], 0);
+}
+
+TEST(Pipeline, CommitsAPictureForEveryPress) {
+  const PipelineRun& run = throughAllModes();
+  std::size_t answered = 0;
+  for (const json& picture : run.records.at("picture")) {
+    if (picture["button_event_ns"] != 0) {
+      ++answered;
+      EXPECT_GT(picture["commit_ns"], picture["button_event_ns"]);
+    }
+  }
+  EXPECT_EQ(answered, 4U);
+}
+
+TEST(Pipeline, KeepsTheOrderOfInstantsInEveryPicture) {
+  const PipelineRun& run = throughAllModes();
+  for (const json& picture : run.records.at("picture")) {
+    if (picture["trigger"] == 0) continue;
+    std::int64_t before = 0;
+    for (const char* instant :
+         {"wake_ns", "target_point_begin_ns", "target_point_end_ns", "homographies_begin_ns",
+          "homographies_end_ns", "warp_submit_ns", "upload_end_ns", "warp_end_ns", "commit_ns"}) {
+      EXPECT_GE(picture[instant], before) << instant << " of " << picture;
+      before = picture[instant];
+    }
+  }
+}
+
+TEST(Pipeline, RunsOnlyTheThreadsOfTheThreadTable) {
+  const PipelineRun& run = throughAllModes();
+  const std::map<std::string, test::TableRow> table = test::readThreadTable(KAGAMI_THREAD_TABLE);
+  ASSERT_FALSE(table.empty());
+  std::set<std::string> seen;
+  for (const json& thread : run.records.at("run").front()["threads"]) {
+    const std::string name = test::tableName(thread["name"]);
+    const auto row = table.find(name);
+    ASSERT_NE(row, table.end()) << name << " is not in docs/real-time.md";
+    seen.insert(name);
+    // Without permission every thread runs as SCHED_OTHER, and the daemon says so.
+    if (run.daemon_output.find("without its real-time priority") == std::string::npos) {
+      EXPECT_EQ(thread["policy"], row->second.policy) << name;
+      EXPECT_EQ(thread["priority"], row->second.priority) << name;
+    }
+  }
+  for (const char* name : {"main", "render", "panel", "trigger", "recv"}) {
+    EXPECT_TRUE(seen.contains(name)) << name << " does not run";
+  }
+}
+
+}  // namespace
