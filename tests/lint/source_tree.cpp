@@ -11,13 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> kTextSuffixes = {".h",    ".cpp", ".md",
-                                                           ".toml", ".txt", ".json"};
-
+/// Pictures, films and the like are no text.
 bool isText(const fs::path& path) {
-  const auto suffix = path.extension().string();
-  return suffix.empty() || suffix == ".sh" || suffix == ".supp" ||
-         std::ranges::find(kTextSuffixes, suffix) != kTextSuffixes.end();
+  static constexpr std::array<std::string_view, 5> kBinary = {".png", ".jpg", ".mp4", ".bin",
+                                                              ".gz"};
+  return std::ranges::find(kBinary, path.extension().string()) == kBinary.end();
 }
 
 /// Outputs lie beside the sources: nobody wrote what is in them.
