@@ -186,12 +186,21 @@ TEST_P(DisplayConformance, TakesTextThatIsNoText) {
   ASSERT_TRUE(display_->render(&plan_, status_));
 }
 
-TEST_P(DisplayConformance, IsMadeOnOneThreadAndUsedOnAnother) {
-  std::jthread render_thread([&] {
-    renderOrFail();
-    commitWhenReady(1);
-    EXPECT_TRUE(waitFlip());
-  });
+TEST_P(DisplayConformance, GoesFromThreadToThreadByDetach) {
+  for (std::uint64_t id = 1; id <= 2; ++id) {
+    std::jthread render_thread([&] {
+      renderOrFail();
+      commitWhenReady(id);
+      EXPECT_TRUE(waitFlip());
+      display_->detach();
+    });
+  }
+  renderOrFail();
+}
+
+TEST_P(DisplayConformance, MayBeDestroyedAfterAThreadThatDidNotDetach) {
+  std::jthread([&] { renderOrFail(); }).join();
+  display_.reset();
 }
 
 std::unique_ptr<hal::Display> makeOffscreen() {
