@@ -14,8 +14,8 @@ namespace hal::emulated {
 ///
 /// Threads  As hal::TriggerLine.
 /// RT       setActive(): formats into a fixed buffer and makes one send that does not block.
-/// Errors   kDeviceLost when nothing listens on the wire; kBusy when the kernel has no room:
-///          no edge left then.
+/// Errors   kDeviceLost when nothing listened to an earlier edge; kBusy when the kernel has no
+///          room. This edge did not leave then.
 class EmulatedTriggerLine final : public TriggerLine {
  public:
   /// Connects to the wire on 127.0.0.1:@p port and leaves the line inactive.

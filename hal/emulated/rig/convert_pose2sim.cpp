@@ -80,7 +80,7 @@ std::expected<CameraModel, std::string> parseCamera(std::string_view element) {
 }
 
 std::expected<SizePx, std::string> videoSize(const fs::path& path) {
-  cv::VideoCapture video(path.string());
+  cv::VideoCapture video(path.string(), cv::CAP_FFMPEG);
   if (!video.isOpened()) return std::unexpected(path.string() + " cannot be read as a video");
   return SizePx{static_cast<std::uint32_t>(video.get(cv::CAP_PROP_FRAME_WIDTH)),
                 static_cast<std::uint32_t>(video.get(cv::CAP_PROP_FRAME_HEIGHT))};

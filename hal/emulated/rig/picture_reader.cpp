@@ -63,7 +63,7 @@ class PictureSource {
     for (const char* ending : kVideoEndings) {
       const fs::path video = folder / (camera + ending);
       if (!fs::exists(video, error)) continue;
-      if (!source.video_.open(video.string())) {
+      if (!source.video_.open(video.string(), cv::CAP_FFMPEG)) {
         return std::unexpected(video.string() + " cannot be read as a video");
       }
       source.name_ = video.string();
