@@ -1,7 +1,7 @@
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "hal/aravis/arrival_stamps.h"
 #include "hal/aravis/feature_profile.h"

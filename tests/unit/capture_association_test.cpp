@@ -1,8 +1,8 @@
-#include "appliance/capture/association.h"
+#include <memory>
 
 #include <gtest/gtest.h>
 
-#include <memory>
+#include "appliance/capture/association.h"
 
 namespace {
 

@@ -1,9 +1,9 @@
-#include "appliance/capture/edge_board.h"
+#include <memory>
+#include <thread>
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <thread>
+#include "appliance/capture/edge_board.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
-#include "appliance/capture/frame_set.h"
-
 #include <gtest/gtest.h>
+
+#include "appliance/capture/frame_set.h"
 
 namespace {
 
