@@ -185,12 +185,14 @@ class EmulatorTest : public testing::Test {
 TEST_F(EmulatorTest, GivesOneStampedFramePerPulse) {
   start();
   std::string error;
-  const auto camera = open(error);
+  auto camera = open(error);
   ASSERT_TRUE(camera) << error;
   ASSERT_EQ(pushProfile(camera.get()), "");
-  const auto stream = startStream(camera.get());
+  auto stream = startStream(camera.get());
   ASSERT_TRUE(stream);
   expectPicturePerPulse(stream.get(), 20);
+  stream.reset();  // while there still is a camera that answers
+  camera.reset();
   const auto stats = stop();
   EXPECT_EQ(stats["triggers"], 20);
   EXPECT_EQ(stats["frames_sent"], 20);
@@ -201,14 +203,16 @@ TEST_F(EmulatorTest, GivesOneStampedFramePerPulse) {
 TEST_F(EmulatorTest, SendsAgainWhatTheWireLost) {
   start({"--loss", "0.02", "--seed", "7"});
   std::string error;
-  const auto camera = open(error);
+  auto camera = open(error);
   ASSERT_TRUE(camera) << error;
   ASSERT_EQ(pushProfile(camera.get()), "");
   Failure f;
   arv_camera_gv_set_packet_size(camera.get(), 1500, &f);  // more packets, more losses
-  const auto stream = startStream(camera.get());
+  auto stream = startStream(camera.get());
   ASSERT_TRUE(stream);
   expectPicturePerPulse(stream.get(), 30);
+  stream.reset();  // while there still is a camera that answers
+  camera.reset();
   const auto stats = stop();
   EXPECT_GT(stats["packets_lost_on_purpose"], 0);
   EXPECT_GT(stats["packets_resent"], 0);
