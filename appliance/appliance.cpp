@@ -52,6 +52,12 @@ hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& cam
           .frame_retention_us = config.frame_retention_us};
 }
 
+std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
+  std::vector<rt::Nanoseconds> ladder;
+  for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
+  return ladder;
+}
+
 rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how) {
   return {
       .name = std::move(name), .policy = how.policy, .priority = how.priority, .cpus = how.cpus};
@@ -155,11 +161,16 @@ std::expected<void, std::string> Appliance::makeHistory() {
   auto history = FrameHistory::create(*fitted);
   if (!history) return std::unexpected(history.error());
   history_ = std::move(*history);
-  if (config_.realtime.lock_memory && !history_->memory().report().locked) {
-    degraded_.emplace_back(
-        "the frame history is not locked in memory: raise the memlock limit "
-        "(LimitMEMLOCK=infinity)");
-  }
+  // The rest of the process after the arena: mlockall first would fault it in page by page.
+  if (!config_.realtime.lock_memory) return {};
+  const rt::MemoryLock lock = rt::lockMemory();
+  if (lock.locked && history_->memory().report().locked) return {};
+  std::string refused = lock.locked
+                            ? "the frame history is not locked in memory: raise the memlock "
+                              "limit (LimitMEMLOCK=infinity)"
+                            : lock.message;
+  if (config_.realtime.require) return std::unexpected(refused);
+  degraded_.push_back(std::move(refused));
   return {};
 }
 
@@ -225,7 +236,8 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
       RenderParameters{.trigger_period = period_,
                        .zoom = config_.display.zoom,
                        .pixel_format = config_.cameras.pixel_format,
-                       .director = {.sweep_views_per_second = config_.director.sweep_views_per_s}});
+                       .director = {.sweep_views_per_second = config_.director.sweep_views_per_s,
+                                    .delay_ladder = delayLadder(config_.director)}});
 }
 
 std::expected<void, std::string> Appliance::startThreads(const hal::Display& display) {

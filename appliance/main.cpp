@@ -20,7 +20,6 @@
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
 #include "appliance/stop_signals.h"
-#include "rt/memory.h"
 #include "ui-kms/offscreen_display.h"
 
 namespace {
@@ -110,12 +109,6 @@ std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
     if (!made) return std::unexpected(made.error());
     recorder = std::move(*made);
   }
-  if (config.realtime.lock_memory) {
-    const rt::MemoryLock lock = rt::lockMemory();
-    if (!lock.locked && config.realtime.require) return std::unexpected(lock.message);
-    if (!lock.locked) logWarning(lock.message);
-  }
-
   auto running = Appliance::start(config, site.rig, **display, recorder.get());
   if (!running) return std::unexpected(running.error());
   logInfo(motionBlurLine(config, site.rig));

@@ -70,7 +70,7 @@ struct Config {
   };
 
   struct Director {
-    std::vector<double> delay_ladder_s{0.5, 1, 2, 3, 4, 5, 6, 7};
+    std::vector<double> delay_ladder_s{0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30};
     double sweep_views_per_s = 10;
     bool operator==(const Director&) const = default;
   };

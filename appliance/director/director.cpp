@@ -1,21 +1,13 @@
 #include "appliance/director/director.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <limits>
+#include <span>
 
 namespace appliance {
 namespace {
 
-using std::chrono::milliseconds;
-
-/// What a coach asks for: fine near the present, coarse far from it.
-constexpr std::array<rt::Nanoseconds, 13> kDelayLadder = {
-    milliseconds(0),      milliseconds(500),    milliseconds(1'000),  milliseconds(2'000),
-    milliseconds(3'000),  milliseconds(5'000),  milliseconds(7'000),  milliseconds(10'000),
-    milliseconds(15'000), milliseconds(20'000), milliseconds(30'000), milliseconds(45'000),
-    milliseconds(60'000)};
 constexpr rt::Nanoseconds kLongestDelay = std::chrono::hours(1);
 
 /// Moments around a hole in everybody's memory that are tried in its place.
@@ -29,15 +21,17 @@ rt::Nanoseconds inTime(std::uint64_t triggers, rt::Nanoseconds period) {
   return static_cast<std::int64_t>(triggers) * period;
 }
 
-rt::Nanoseconds rungAbove(rt::Nanoseconds delay, rt::Nanoseconds longest) {
-  const auto* rung = std::ranges::upper_bound(kDelayLadder, delay);
-  const rt::Nanoseconds above = rung == kDelayLadder.end() ? longest : *rung;
+using Ladder = std::span<const rt::Nanoseconds>;
+
+rt::Nanoseconds rungAbove(Ladder ladder, rt::Nanoseconds delay, rt::Nanoseconds longest) {
+  const auto rung = std::ranges::upper_bound(ladder, delay);
+  const rt::Nanoseconds above = rung == ladder.end() ? longest : *rung;
   return std::max(delay, std::min(above, longest));
 }
 
-rt::Nanoseconds rungBelow(rt::Nanoseconds delay, rt::Nanoseconds longest) {
-  const auto* rung = std::ranges::lower_bound(kDelayLadder, std::min(delay, longest));
-  return rung == kDelayLadder.begin() ? rt::Nanoseconds::zero() : *(rung - 1);
+rt::Nanoseconds rungBelow(Ladder ladder, rt::Nanoseconds delay, rt::Nanoseconds longest) {
+  const auto rung = std::ranges::lower_bound(ladder, std::min(delay, longest));
+  return rung == ladder.begin() ? rt::Nanoseconds::zero() : *(rung - 1);
 }
 
 /// Goes on to another moment, for which the view of the sweep's start is the one to see.
@@ -104,10 +98,10 @@ void Director::apply(const Command& command, const Moment& at) RT_SAFE {
       }
       break;
     case kDelayLess:
-      changeDelay(rungBelow(delay_, longest));
+      changeDelay(rungBelow(parameters_.delay_ladder, delay_, longest));
       break;
     case kDelayMore:
-      changeDelay(rungAbove(delay_, longest));
+      changeDelay(rungAbove(parameters_.delay_ladder, delay_, longest));
       break;
     case kSetDelay:
       changeDelay(command.delay);

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "appliance/director/command.h"
 #include "appliance/director/shot.h"
@@ -17,6 +19,9 @@ struct DirectorParameters {
   /// Kept from the history's oldest end: those sets may be recycled before they are pinned.
   std::uint32_t history_margin_triggers = 4;
   double sweep_views_per_second = 20;
+  /// What the delay keys step through, rising; live stands below the first, the history's end
+  /// above the last.
+  std::vector<rt::Nanoseconds> delay_ladder;
 };
 
 /// Decides which stored moment of which view is shown: a pure state machine.
@@ -41,8 +46,8 @@ class Director {
  public:
   static constexpr std::uint64_t kBridgedTriggers = 3;
 
-  explicit Director(const DirectorParameters& parameters)
-      : parameters_(parameters), view_(parameters.first_view) {}
+  explicit Director(DirectorParameters parameters)
+      : parameters_(std::move(parameters)), view_(parameters_.first_view) {}
 
   /// Applies the commands since the last tick in order, then decides.
   [[nodiscard]] Shot tick(rt::Timestamp now, rt::Nanoseconds trigger_period,

@@ -95,7 +95,9 @@ class Session {
 
   std::uint32_t cameras;
   LossyHistory history;
-  Director director{{.first_view = 3, .history_margin_triggers = 2}};
+  Director director{{.first_view = 3,
+                     .history_margin_triggers = 2,
+                     .delay_ladder = {std::chrono::milliseconds(500), std::chrono::seconds(2)}}};
   rt::Timestamp now = rt::fromNs(1);
   std::uint64_t trigger = 0;
 };

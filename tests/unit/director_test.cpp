@@ -62,7 +62,10 @@ class DirectorOnAnArcOfFive : public testing::Test {
   }
 
   FakeHistory history;
-  Director director{DirectorParameters{.first_view = 2}};
+  Director director{
+      DirectorParameters{.first_view = 2,
+                         .delay_ladder = {milliseconds(500), seconds(1), seconds(2), seconds(3),
+                                          seconds(5), seconds(7), seconds(10)}}};
   rt::Timestamp now = rt::fromNs(1'000'000'000);
 };
 
