@@ -122,6 +122,7 @@ int serve(Arguments& a) {
   if (!scene) return fail(scene.error());
   auto rig = emulator::Rig::open(**scene, a.rig);
   if (!rig) return fail(rig.error());
+  const double cpu_at_ready = emulator::processCpuSeconds();
   std::puts("ready");
   std::fflush(stdout);
   if (auto served = rig->run(); !served) return fail(served.error());
@@ -131,7 +132,8 @@ int serve(Arguments& a) {
   if (!reason.empty()) std::fprintf(stderr, "kagami-emulator: run INVALID: %s\n", reason.c_str());
   if (!a.stats.empty()) {
     if (auto written = emulator::writeStatistics(a.stats, (*scene)->cameraCount(), rig->counters(),
-                                                 rig->lateness(), rig->triggerPeriod());
+                                                 rig->lateness(), rig->triggerPeriod(),
+                                                 emulator::processCpuSeconds() - cpu_at_ready);
         !written) {
       return fail(written.error());
     }

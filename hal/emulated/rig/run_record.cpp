@@ -15,15 +15,6 @@ namespace {
 
 constexpr rt::Nanoseconds kLateP99Limit{5'000'000};
 
-double cpuSeconds() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 std::string milliseconds(rt::Nanoseconds t) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f ms", static_cast<double>(t.count()) * 1e-6);
@@ -31,6 +22,15 @@ std::string milliseconds(rt::Nanoseconds t) {
 }
 
 }  // namespace
+
+double processCpuSeconds() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
 
 void LatenessHistogram::add(rt::Nanoseconds lateness) {
   lateness = std::max(lateness, rt::Nanoseconds{0});
@@ -95,7 +95,7 @@ std::string invalidReason(const Counters& counters, const LatenessHistogram& lat
 std::expected<void, std::string> writeStatistics(const std::string& path, std::uint32_t cameras,
                                                  const Counters& counters,
                                                  const LatenessHistogram& lateness,
-                                                 rt::Nanoseconds period) {
+                                                 rt::Nanoseconds period, double cpu_seconds) {
   const std::string reason = invalidReason(counters, lateness, period);
   const nlohmann::ordered_json json = {
       {"cameras", cameras},
@@ -109,7 +109,7 @@ std::expected<void, std::string> writeStatistics(const std::string& path, std::u
       {"send_failures", counters.send_failures},
       {"valid", reason.empty()},
       {"invalid_reason", reason},
-      {"cpu_seconds", cpuSeconds()},
+      {"cpu_seconds", cpu_seconds},
       {"bytes_sent", counters.bytes_sent},
       {"frames_cut_short", counters.frames_cut_short},
       {"packets_lost_on_purpose", counters.packets_lost_on_purpose},

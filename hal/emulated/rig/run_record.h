@@ -75,11 +75,12 @@ class WireLog {
 [[nodiscard]] std::string invalidReason(const Counters& counters, const LatenessHistogram& lateness,
                                         rt::Nanoseconds period);
 
-/// Writes the JSON that --stats asks for.
-[[nodiscard]] std::expected<void, std::string> writeStatistics(const std::string& path,
-                                                               std::uint32_t cameras,
-                                                               const Counters& counters,
-                                                               const LatenessHistogram& lateness,
-                                                               rt::Nanoseconds period);
+/// CPU time of this process so far, user and system.
+[[nodiscard]] double processCpuSeconds();
+
+/// Writes the JSON that --stats asks for. @p cpu_seconds  spent while serving.
+[[nodiscard]] std::expected<void, std::string> writeStatistics(
+    const std::string& path, std::uint32_t cameras, const Counters& counters,
+    const LatenessHistogram& lateness, rt::Nanoseconds period, double cpu_seconds);
 
 }  // namespace emulator
