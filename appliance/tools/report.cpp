@@ -121,7 +121,9 @@ std::vector<const PictureRecord*> shownPictures(const Trace& trace) {
   std::vector<const PictureRecord*> shown;
   for (const PictureRecord& picture : trace.pictures)
     if (happened(picture.commit) && picture.trigger != 0) shown.push_back(&picture);
-  std::ranges::stable_sort(shown, {}, &PictureRecord::commit);
+  std::ranges::sort(shown, {}, [](const PictureRecord* picture) {
+    return std::pair(picture->commit, picture->picture_id);
+  });
   return shown;
 }
 
