@@ -187,8 +187,10 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
   Lines pictures;
   for (const json& picture : run.lines["picture"])
     if (ns(picture, "commit") != 0 && picture["trigger"] != 0) pictures.push_back(picture);
-  std::stable_sort(pictures.begin(), pictures.end(),
-                   [](const json& a, const json& b) { return ns(a, "commit") < ns(b, "commit"); });
+  std::sort(pictures.begin(), pictures.end(), [](const json& one, const json& other) {
+    return std::pair(ns(one, "commit"), one["picture_id"]) <
+           std::pair(ns(other, "commit"), other["picture_id"]);
+  });
 
   // One pass over neighbours: every stretch between two commits belongs to the mode of the first.
   double playing_s = 0;
