@@ -1,25 +1,34 @@
 #include "appliance/camera_watch.h"
 
+#include <utility>
+
 namespace appliance {
 
-std::vector<std::string> CameraWatch::look(const Status& status) {
+std::vector<std::string> CameraWatch::look(const Status& status, rt::Timestamp now) {
   std::vector<std::string> lines;
-  before_.resize(status.cameras.size());
+  seen_.resize(status.cameras.size());
   for (std::size_t i = 0; i < status.cameras.size(); ++i) {
-    const CameraStatus& now = status.cameras[i];
-    const CameraStatus& before = before_[i];
-    const std::string who = "camera " + std::to_string(i + 1) + " (" + now.name + "): ";
-    if (now.state == CameraState::kLost && before.state != CameraState::kLost) {
+    const CameraStatus& camera = status.cameras[i];
+    Seen& seen = seen_[i];
+    const std::string who = "camera " + std::to_string(i + 1) + " (" + camera.name + "): ";
+    const CameraState before = std::exchange(seen.state, camera.state);
+    const std::uint64_t lost_before = std::exchange(seen.frames_lost, camera.frames_lost);
+
+    if (camera.state == CameraState::kLost && before != CameraState::kLost) {
       lines.push_back(who + "no frames: check its cable, its power and its switch port");
-    } else if (now.state == CameraState::kStreaming && before.state == CameraState::kLost) {
+    } else if (camera.state == CameraState::kStreaming && before == CameraState::kLost) {
       lines.push_back(who + "frames again");
     }
-    if (now.state == CameraState::kStreaming && now.frames_lost > before.frames_lost) {
-      lines.push_back(who + std::to_string(now.frames_lost - before.frames_lost) +
-                      " frames lost: check its cable and the network's load");
-    }
+
+    if (camera.state != CameraState::kStreaming) continue;
+    if (camera.frames_lost > lost_before) seen.untold += camera.frames_lost - lost_before;
+    const bool told_lately =
+        seen.loss_told_at != rt::Timestamp{} && now - seen.loss_told_at < kLossPeriod;
+    if (seen.untold == 0 || told_lately) continue;
+    lines.push_back(who + std::to_string(std::exchange(seen.untold, 0)) +
+                    " frames lost: check its cable and the network's load");
+    seen.loss_told_at = now;
   }
-  before_ = status.cameras;
   return lines;
 }
 

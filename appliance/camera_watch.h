@@ -1,22 +1,38 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "appliance/control/status.h"
+#include "rt/clock.h"
 
 namespace appliance {
 
-/// Notices cameras that fall silent or come back, and frames that were lost, a line each.
+/// Notices cameras that fall silent or come back, and frames that were lost, a line each. A
+/// camera's first lost frames are told at once, later ones summed: a bad cable loses some at every
+/// look.
 ///
 /// Threads  main.
 class CameraWatch {
  public:
+  /// Least time between two lines about one camera's lost frames.
+  static constexpr rt::Nanoseconds kLossPeriod = std::chrono::seconds(5);
+
   /// What changed since the last look: "camera 7 (cam07): no frames: check its cable and port".
-  [[nodiscard]] std::vector<std::string> look(const Status& status);
+  /// Frames that a silent camera owes are told by its silence, not counted.
+  [[nodiscard]] std::vector<std::string> look(const Status& status, rt::Timestamp now);
 
  private:
-  std::vector<CameraStatus> before_;
+  struct Seen {
+    CameraState state = CameraState::kStarting;
+    std::uint64_t frames_lost = 0;
+    std::uint64_t untold = 0;      ///< of the frames lost, those that no line has named yet
+    rt::Timestamp loss_told_at{};  ///< zero: never
+  };
+
+  std::vector<Seen> seen_;
 };
 
 }  // namespace appliance

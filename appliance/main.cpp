@@ -20,6 +20,7 @@
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
 #include "appliance/stop_signals.h"
+#include "rt/clock.h"
 #include "ui-kms/offscreen_display.h"
 
 namespace {
@@ -91,7 +92,7 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
     } else {
       stop.waitFor(kTick);
     }
-    for (const std::string& line : watch.look(running.status())) logWarning(line);
+    for (const std::string& line : watch.look(running.status(), rt::now())) logWarning(line);
     sd_notify(0, "WATCHDOG=1");
   }
   sd_notify(0, "STOPPING=1");
