@@ -218,6 +218,7 @@ class EmulatedGigE final : public CameraRig {
 };
 
 INSTANTIATE_TEST_SUITE_P(Aravis, CameraConformance,
-                         testing::Values(MakeRig{[] { return std::make_unique<EmulatedGigE>(); }}));
+                         testing::Values(MakeRig{[] { return std::make_unique<EmulatedGigE>(); }}),
+                         [](const auto& /*rig*/) { return "EmulatedGigE"; });
 
 }  // namespace
