@@ -25,8 +25,9 @@ struct FrameArrival {
   std::uint32_t slot = 0;  ///< index into the slots given to Camera::start()
   FrameStatus status = FrameStatus::kAborted;
   std::uint64_t frame_id = 0;  ///< counted by the camera, unwrapped; finds frames lost on the wire
-  rt::Timestamp first_packet;  ///< the leader's arrival
-  rt::Timestamp last_packet;   ///< the frame's last packet was taken from the socket
+  rt::Nanoseconds camera_clock{0};  ///< the camera's own stamp of the frame; 0: it gave none
+  rt::Timestamp first_packet;       ///< this machine looked at the leader
+  rt::Timestamp last_packet;        ///< the frame's last packet was taken from the socket
 };
 
 /// Who takes the frames of one camera.

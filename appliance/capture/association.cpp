@@ -9,9 +9,9 @@ constexpr std::uint64_t kReach = 32;
 
 }  // namespace
 
-std::optional<std::uint64_t> Association::triggerOf(rt::Timestamp first_packet,
+std::optional<std::uint64_t> Association::triggerOf(rt::Timestamp arrival,
                                                     const EdgeBoard& edges) const RT_SAFE {
-  const rt::Timestamp fired = first_packet - camera_delay_;
+  const rt::Timestamp fired = arrival - camera_delay_;
   const std::uint64_t newest = edges.newest();
   for (std::uint64_t back = 0; back < kReach && back < newest; ++back) {
     const std::uint64_t trigger = newest - back;

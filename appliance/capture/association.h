@@ -23,7 +23,7 @@ class Association {
       : period_(period), camera_delay_(camera_delay) {}
 
   /// Nothing when no edge is near enough: such a frame is dropped and counted, never guessed.
-  [[nodiscard]] std::optional<std::uint64_t> triggerOf(rt::Timestamp first_packet,
+  [[nodiscard]] std::optional<std::uint64_t> triggerOf(rt::Timestamp arrival,
                                                        const EdgeBoard& edges) const RT_SAFE;
 
  private:

@@ -18,7 +18,8 @@ std::uint64_t Collector::triggerOf(const hal::FrameArrival& arrival) RT_SAFE {
     if (arrival.status != hal::FrameStatus::kAborted) count(incomplete_);
     return 0;
   }
-  const auto trigger = association_.triggerOf(arrival.first_packet, board_.edges);
+  const rt::Timestamp leader = arrivals_.arrival(arrival.first_packet, arrival.camera_clock);
+  const auto trigger = association_.triggerOf(leader, board_.edges);
   if (!trigger || *trigger <= frames_.newest()) {
     count(unattributed_);
     return 0;

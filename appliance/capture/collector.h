@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "appliance/capture/arrival_filter.h"
 #include "appliance/capture/association.h"
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
@@ -52,6 +53,7 @@ class Collector final : public hal::FrameSink {
   [[nodiscard]] std::uint64_t triggerOf(const hal::FrameArrival& arrival) RT_SAFE;
 
   const std::uint32_t camera_;
+  ArrivalFilter arrivals_;  // the receive thread's
   const Association association_;
   CameraFrames& frames_;
   CaptureBoard& board_;

@@ -155,6 +155,7 @@ void AravisCamera::deliver() {
           reinterpret_cast<std::uintptr_t>(arv_buffer_get_user_data(buffer))),
       .status = statusOf(buffer, profile_),
       .frame_id = frame_ids_.unwrap(arv_buffer_get_frame_id(buffer)),
+      .camera_clock = rt::Nanoseconds{static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer))},
       .first_packet = stamps_.deliver(last_packet),
       .last_packet = last_packet,
   };
