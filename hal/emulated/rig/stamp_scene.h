@@ -3,18 +3,22 @@
 #include <array>
 #include <cstdint>
 #include <expected>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "hal/emulated/rig/rig_file.h"
 #include "hal/emulated/rig/scene.h"
 #include "hal/emulated/rig/stamp_card.h"
+#include "rt/memory.h"
 
 namespace emulator {
 
 /// A training hall with a mannequin, seen by a rig of arc cameras; every frame carries a card
 /// with its camera and trigger. The hall is drawn once; a frame costs only its card.
-/// Memory   Per camera one picture, and kFrameHistory times the band of rows with the card.
+/// Memory   Per camera one picture, and kFrameHistory times the band of rows with the card, in
+///          huge pages where the system has them: every byte is read again for each frame, and
+///          on small pages a third of the sending time went into finding them.
 class StampScene final : public Scene {
  public:
   /// Refuses sizes that cannot hold the card.
@@ -29,18 +33,21 @@ class StampScene final : public Scene {
                                      std::uint32_t slot) override;
 
  private:
-  struct View {
-    std::vector<std::uint8_t> hall;
-    std::array<std::vector<std::uint8_t>, kFrameHistory> bands;
+  struct View {  // in pictures_
+    std::span<std::uint8_t> hall;
+    std::array<std::span<std::uint8_t>, kFrameHistory> bands;
   };
 
-  StampScene(RigModel rig, SizePx size);
+  StampScene(RigModel rig, SizePx size, rt::LockedArena pictures);
+  [[nodiscard]] static std::size_t bandBytes(SizePx size);
+  [[nodiscard]] static std::size_t viewBytes(SizePx size);
   void draw(std::size_t camera);
 
   RigModel rig_;
   SizePx size_;
   StampLayout layout_;
   StampCard card_;
+  rt::LockedArena pictures_;
   std::vector<View> views_;
 };
 
