@@ -21,6 +21,7 @@
 #include "appliance/startup_checks.h"
 #include "appliance/stop_signals.h"
 #include "rt/clock.h"
+#include "ui-kms/draw_workers.h"
 #include "ui-kms/offscreen_display.h"
 
 namespace {
@@ -68,6 +69,11 @@ std::expected<std::unique_ptr<ui::OffscreenDisplay>, std::string> makeDisplay(
   return display;
 }
 
+bool scheduleDrawWorkers(const Config::ThreadSchedule& how) {
+  return ui::scheduleDrawWorkers(
+      {.policy = how.policy, .priority = how.priority, .cpus = how.cpus});
+}
+
 std::unique_ptr<ControlServer> openControl(const Config::Control& config, Appliance& running) {
   if (config.bus == "none") return nullptr;
   auto control = ControlServer::open(config.bus, config.name, running, running);
@@ -109,6 +115,12 @@ std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
     auto made = PictureRecorder::create(config.record, (*display)->mode(), **display);
     if (!made) return std::unexpected(made.error());
     recorder = std::move(*made);
+  }
+  if (!scheduleDrawWorkers(config.realtime.draw)) {
+    const char* refused =
+        "the software renderer's threads run without real-time priority: pictures may come late";
+    if (config.realtime.require) return std::unexpected(refused);
+    logWarning(refused);
   }
   auto running = Appliance::start(config, site.rig, **display, recorder.get());
   if (!running) return std::unexpected(running.error());

@@ -89,10 +89,10 @@ std::vector<int> cpusOf(pid_t tid) {
 
 }  // namespace
 
-Result<ThreadGrant> applyToCurrentThread(const ThreadConfig& config) {
-  if (const auto valid = check(config); !valid) return std::unexpected(valid.error());
-  pthread_setname_np(pthread_self(), config.name.c_str());
+namespace {
 
+/// The kernel's side of @p config for task @p tid of this process; 0: the caller.
+ThreadGrant schedule(pid_t tid, const ThreadConfig& config) {
   ThreadGrant grant;
   const auto refuse = [&grant](bool& what, int error) {
     what = false;
@@ -102,19 +102,32 @@ Result<ThreadGrant> applyToCurrentThread(const ThreadConfig& config) {
     cpu_set_t set;
     CPU_ZERO(&set);
     for (const int cpu : config.cpus) CPU_SET(static_cast<std::size_t>(cpu), &set);
-    if (sched_setaffinity(0, sizeof set, &set) != 0) refuse(grant.affinity, errno);
+    if (sched_setaffinity(tid, sizeof set, &set) != 0) refuse(grant.affinity, errno);
   }
-  prefaultStack(config.prefault_stack_bytes);
-
   const bool realtime = config.policy != SchedPolicy::kOther;
   const int policy = *kernelPolicy(config.policy);
   const sched_param parameter{.sched_priority = config.priority};
-  if (sched_setscheduler(0, realtime ? policy | SCHED_RESET_ON_FORK : policy, &parameter) != 0) {
+  if (sched_setscheduler(tid, realtime ? policy | SCHED_RESET_ON_FORK : policy, &parameter) != 0) {
     refuse(grant.realtime, errno);
     const sched_param none{.sched_priority = 0};
-    sched_setscheduler(0, SCHED_OTHER, &none);  // never an inherited priority
+    sched_setscheduler(tid, SCHED_OTHER, &none);  // never an inherited priority
   }
   return grant;
+}
+
+}  // namespace
+
+Result<ThreadGrant> applyToCurrentThread(const ThreadConfig& config) {
+  if (const auto valid = check(config); !valid) return std::unexpected(valid.error());
+  pthread_setname_np(pthread_self(), config.name.c_str());
+  prefaultStack(config.prefault_stack_bytes);
+  return schedule(0, config);
+}
+
+Result<ThreadGrant> applyToTask(pid_t tid, const ThreadConfig& config) {
+  if (const auto valid = check(config); !valid) return std::unexpected(valid.error());
+  std::ofstream("/proc/self/task/" + std::to_string(tid) + "/comm") << config.name;
+  return schedule(tid, config);
 }
 
 struct Thread::State {

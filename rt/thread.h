@@ -49,6 +49,10 @@ struct ThreadGrant {
 /// Errors  kInvalidConfig: the name, policy or priority cannot be asked for.
 [[nodiscard]] Result<ThreadGrant> applyToCurrentThread(const ThreadConfig& config);
 
+/// The same for another task of this process, one that a library made and whose code we do not
+/// see; its stack is not prefaulted.
+[[nodiscard]] Result<ThreadGrant> applyToTask(pid_t tid, const ThreadConfig& config);
+
 /// A named thread with its scheduling, joined on destruction.
 ///
 /// Threads  The owner's; the body runs on the new thread.

@@ -177,6 +177,7 @@ void readRealtime(Section section, Config::Realtime& realtime) {
   readSchedule(section.sub("trigger"), realtime.trigger);
   readSchedule(section.sub("receive"), realtime.receive);
   readSchedule(section.sub("render"), realtime.render);
+  readSchedule(section.sub("draw"), realtime.draw);
   readSchedule(section.sub("panel"), realtime.panel);
   section.end();
 }

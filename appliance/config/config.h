@@ -96,6 +96,7 @@ struct Config {
     ThreadSchedule trigger{rt::SchedPolicy::kFifo, 80, {}};
     ThreadSchedule receive{rt::SchedPolicy::kFifo, 70, {}};
     ThreadSchedule render{rt::SchedPolicy::kFifo, 60, {}};
+    ThreadSchedule draw{rt::SchedPolicy::kFifo, 55, {}};  ///< workers of a software renderer
     ThreadSchedule panel{};
     bool operator==(const Realtime&) const = default;
   };

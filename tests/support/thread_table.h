@@ -12,7 +12,7 @@ struct TableRow {
   int priority = 0;
 };
 
-/// The thread table of docs/real-time.md; the receive threads stand under "recv".
+/// The thread table of docs/real-time.md; families of threads (recv01, recv02 ...) stand under one name.
 [[nodiscard]] inline std::map<std::string, TableRow> readThreadTable(const std::string& page) {
   std::map<std::string, TableRow> table;
   std::ifstream file(page);
@@ -20,7 +20,7 @@ struct TableRow {
   std::smatch found;
   for (std::string line; std::getline(file, line);) {
     if (!std::regex_match(line, found, row)) continue;
-    const std::string name = found[1].str().starts_with("recv") ? "recv" : found[1].str();
+    const std::string name = found[1].str().substr(0, found[1].str().find_first_of("0123456789"));
     table[name] = {.policy = found[2] == "FIFO" ? "fifo" : "other",
                    .priority = found[3].length() > 0 ? std::stoi(found[3]) : 0};
   }
@@ -30,8 +30,10 @@ struct TableRow {
 /// The table's name of a task: recv01, recv02, ... are one row; a task that a library made, and
 /// main itself, bear the program's name or the library's.
 [[nodiscard]] inline std::string tableName(const std::string& task) {
-  if (task.starts_with("recv")) return "recv";
-  for (const char* library : {"kagamid", "llvmpipe-", "gmain", "gdbus"}) {
+  for (const char* family : {"recv", "draw"}) {
+    if (task.starts_with(family)) return family;
+  }
+  for (const char* library : {"kagamid", "gmain", "gdbus"}) {
     if (task.starts_with(library)) return "main";  // SCHED_OTHER, as main, which made it
   }
   return task;
