@@ -32,6 +32,7 @@ root=$(cd -- "$(dirname -- "$0")/../.." && pwd)
 bin=$root/build/release/bin
 rate_of_recording=30   # Hz: a 1 Gb/s link carries at most 55 of its portrait frames a second
 
+zoom=1.0
 seconds=60
 cameras=20
 size=1280x1024
@@ -166,11 +167,13 @@ addresses = [$addresses]
 rate_hz = $2
 [display]
 refresh_hz = $refresh_hz
+zoom = $zoom
 [panel]
 backend = "$panel"
 script = "$1/panel.txt"
 [record]
 directory = "$1/pictures"
+video_hz = 10
 [state]
 directory = "$1/state"
 trace = "$1/trace.jsonl"
@@ -181,7 +184,8 @@ TEXT
 
 start_emulator() {  # RUN-FOLDER OPTION...
   run=$1; shift
-  "$bin/kagami-emulator" "$@" --wire-log "$run/wire.csv" --stats "$run/emulator.json" \
+  # Hardware is never late for want of a processor: the emulated cameras stand above the daemon.
+  "$bin/kagami-emulator" "$@" --realtime-priority 85 --wire-log "$run/wire.csv" --stats "$run/emulator.json" \
     > "$run/emulator.log" 2>&1 </dev/null &
   emulator=$!
   wait_for_line "$emulator" "$run/emulator.log" '^ready' 600 ||
@@ -324,6 +328,7 @@ run_recording() {  # FOLDER
       return 0 ;;
     *) exit "$rc" ;;
   esac
+  zoom=1.5  # portrait pictures: the athlete fills the height
   run_folder recording "$1" "$rate_of_recording" "$folder_of_recording"
 }
 

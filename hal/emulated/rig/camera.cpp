@@ -152,9 +152,11 @@ void Camera::startTransfer() {
            .pixel_format = registers_.get(reg::kPixelFormat),
            .payload_per_packet = link.packet_bytes - gvsp::kPacketOverheadBytes,
            .picture = source_.expose(exposure.trigger, slot)};
+  // Two messages at once: their packets wake the receiver once, as a network card's coalesced
+  // interrupt does, and Pacing bounds the time they span.
   transfer_.emplace(Transfer{slot,
                              Pacing(exposure.end, link, frame.packetCount(),
-                                    PacketSender::packetsPerMessage(frame.payload_per_packet)),
+                                    2 * PacketSender::packetsPerMessage(frame.payload_per_packet)),
                              {.camera = identity_.number,
                               .frame_id = frame.block_id,
                               .trigger = exposure.trigger,

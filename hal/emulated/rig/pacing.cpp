@@ -16,10 +16,10 @@ rt::Nanoseconds LinkTiming::perPacket() const {
 }
 
 Pacing::Pacing(rt::Timestamp start, const LinkTiming& link, std::uint32_t packets,
-               std::uint32_t packets_per_message)
+               std::uint32_t most_at_once)
     : start_(start), per_packet_(link.perPacket()), packets_(packets) {
   const auto in_time = kLongestGroup / std::max(per_packet_, rt::Nanoseconds{1});
-  group_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(in_time, 1, packets_per_message));
+  group_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(in_time, 1, most_at_once));
 }
 
 Pacing::Due Pacing::next() const {

@@ -32,7 +32,7 @@ class Pacing {
   };
 
   Pacing(rt::Timestamp start, const LinkTiming& link, std::uint32_t packets,
-         std::uint32_t packets_per_message);
+         std::uint32_t most_at_once);
 
   [[nodiscard]] bool done() const { return next_ == packets_; }
   /// The group that leaves next; not when done().
