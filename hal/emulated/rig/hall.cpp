@@ -19,12 +19,12 @@ constexpr int kRayGridPx = 16;
 /// (under 0.01 px off for lenses as mild as the rig's).
 class Rays {
  public:
-  explicit Rays(const CameraModel& camera)
-      : columns_(static_cast<int>(camera.image_size.width) / kRayGridPx + 2) {
+  explicit Rays(const CameraModel& camera) : columns_(camera.image_size.width / kRayGridPx + 2) {
+    const int columns = static_cast<int>(columns_);
     const int rows = static_cast<int>(camera.image_size.height) / kRayGridPx + 2;
     std::vector<cv::Point2d> pixels;
     for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column < columns_; ++column) {
+      for (int column = 0; column < columns; ++column) {
         pixels.emplace_back(column * kRayGridPx, row * kRayGridPx);
       }
     }
@@ -38,12 +38,12 @@ class Rays {
 
   /// In camera axes, z = 1.
   [[nodiscard]] Vec3 at(int x, int y) const {
-    const int column = x / kRayGridPx;
-    const int row = y / kRayGridPx;
+    const auto column = static_cast<std::size_t>(x / kRayGridPx);
+    const auto row = static_cast<std::size_t>(y / kRayGridPx);
     const double u = static_cast<double>(x % kRayGridPx) / kRayGridPx;
     const double v = static_cast<double>(y % kRayGridPx) / kRayGridPx;
-    const auto first = static_cast<std::size_t>(row * columns_ + column);
-    const auto below = first + static_cast<std::size_t>(columns_);
+    const std::size_t first = row * columns_ + column;
+    const std::size_t below = first + columns_;
     const cv::Point2d top = nodes_[first] * (1 - u) + nodes_[first + 1] * u;
     const cv::Point2d bottom = nodes_[below] * (1 - u) + nodes_[below + 1] * u;
     const cv::Point2d p = top * (1 - v) + bottom * v;
@@ -51,7 +51,7 @@ class Rays {
   }
 
  private:
-  int columns_;
+  std::size_t columns_;
   std::vector<cv::Point2d> nodes_;
 };
 

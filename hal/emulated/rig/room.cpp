@@ -95,8 +95,8 @@ class FloorShadow {
   FloorShadow() : texels_(std::size_t{kSide} * kSide) {
     for (int row = 0; row < kSide; ++row) {
       for (int column = 0; column < kSide; ++column) {
-        const Vec3 p = {(static_cast<float>(column) - kSide / 2) * kTexel_m,
-                        (static_cast<float>(row) - kSide / 2) * kTexel_m, 0};
+        const Vec3 p = {(static_cast<float>(column) - kCentre) * kTexel_m,
+                        (static_cast<float>(row) - kCentre) * kTexel_m, 0};
         // The figure's feet darken the floor that they almost touch.
         const float ambient = 0.55f + 0.45f * clamp01(mannequinDistance(p) / 0.35f);
         at(column, row) = {mannequinShadow(p, kKeyLight, 0.10f),
@@ -106,8 +106,8 @@ class FloorShadow {
   }
 
   [[nodiscard]] Visibility operator()(Vec3 p) const {
-    const float u = p.x / kTexel_m + kSide / 2;
-    const float v = p.y / kTexel_m + kSide / 2;
+    const float u = p.x / kTexel_m + kCentre;
+    const float v = p.y / kTexel_m + kCentre;
     if (u < 0 || v < 0 || u >= kSide - 1 || v >= kSide - 1) return {};
     const int column = static_cast<int>(u);
     const int row = static_cast<int>(v);
@@ -119,14 +119,15 @@ class FloorShadow {
 
  private:
   static constexpr int kSide = 280;
+  static constexpr float kCentre = kSide / 2.0f;
   static constexpr float kTexel_m = 0.02f;
 
   static Visibility mix(const Visibility& a, const Visibility& b, float t) {
     return {std::lerp(a.key, b.key, t), std::lerp(a.fill, b.fill, t),
             std::lerp(a.ambient, b.ambient, t)};
   }
-  [[nodiscard]] std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row * kSide + column);
+  [[nodiscard]] static std::size_t index(int column, int row) {
+    return std::size_t{kSide} * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
   }
   Visibility& at(int column, int row) { return texels_[index(column, row)]; }
   [[nodiscard]] const Visibility& at(int column, int row) const {
