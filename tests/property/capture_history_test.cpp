@@ -73,7 +73,7 @@ TEST(FrameHistory, HasNoFrameOfATriggerThatTheCameraMissed) {
   const auto history = makeHistory();
   CameraFrames& frames = history->camera(0);
   Filler camera(frames);
-  for (const std::uint64_t trigger : {1, 2, 4, 5}) camera.deliver(trigger);
+  for (const std::uint64_t trigger : {1U, 2U, 4U, 5U}) camera.deliver(trigger);
   EXPECT_TRUE(frames.holds(2));
   EXPECT_FALSE(frames.holds(3));
   EXPECT_FALSE(frames.tryPin(3));

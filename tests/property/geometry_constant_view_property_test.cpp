@@ -14,7 +14,6 @@
 namespace {
 
 using appliance::Homography;
-using appliance::Rig;
 using appliance::RigCamera;
 using appliance::View;
 using appliance::viewOf;

@@ -26,9 +26,10 @@ TEST(StampCode, ComesBackFromItsCells) {
   const StampCells cells = encodeStamp(kStamp);
   const StampLayout layout{100, 50};
   const auto read = decodeStamp(layout, [&](double x, double y) {
-    const int column = static_cast<int>(x - layout.left_px - StampLayout::kGridLeftPx) / 16;
-    const int row = static_cast<int>(y - layout.top_px - StampLayout::kGridTopPx) / 16;
-    return cells[static_cast<std::size_t>(row * StampLayout::kColumns + column)] ? 200.0 : 20.0;
+    const auto column =
+        static_cast<std::size_t>(x - layout.left_px - StampLayout::kGridLeftPx) / 16;
+    const auto row = static_cast<std::size_t>(y - layout.top_px - StampLayout::kGridTopPx) / 16;
+    return cells[row * StampLayout::kColumns + column] ? 200.0 : 20.0;
   });
   EXPECT_EQ(read, kStamp);
 }

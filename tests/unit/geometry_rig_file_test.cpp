@@ -9,7 +9,6 @@
 namespace {
 
 using appliance::parseRig;
-using appliance::Rig;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
