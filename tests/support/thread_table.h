@@ -12,7 +12,8 @@ struct TableRow {
   int priority = 0;
 };
 
-/// The thread table of docs/real-time.md; families of threads (recv01, recv02 ...) stand under one name.
+/// The thread table of docs/real-time.md; families of threads (recv01, recv02 ...) stand under one
+/// name.
 [[nodiscard]] inline std::map<std::string, TableRow> readThreadTable(const std::string& page) {
   std::map<std::string, TableRow> table;
   std::ifstream file(page);
