@@ -117,7 +117,9 @@ void AravisCamera::stop() {
   delivering_.store(false, std::memory_order_release);
   if (!stream_) return;
   arv_camera_stop_acquisition(camera_.get(), nullptr);
-  stream_.reset();  // joins the receive thread
+  // Not reset(): it clears the pointer first, and deliver() may use it until the thread is joined.
+  g_object_unref(stream_.get());  // joins the receive thread
+  (void)stream_.release();
   buffers_.clear();
 }
 
