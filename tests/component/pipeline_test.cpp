@@ -77,6 +77,7 @@ class PipelineRun {
     daemon_output = daemon.output();
     emulator.terminate();
     emulator_exit = emulator.wait(20s).value_or(-1);
+    if (daemon_exit != 0) return;  // its trace may end anywhere
 
     std::ifstream trace(folder_ / "trace.jsonl");
     for (std::string line; std::getline(trace, line);) {
