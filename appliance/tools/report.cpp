@@ -135,15 +135,21 @@ bool sameFrame(const PictureRecord& a, const PictureRecord& b) {
   return a.trigger == b.trigger && a.camera_shown == b.camera_shown;
 }
 
+/// A press that goes back in time shows stored moments again: that is a new phase, not a repeat.
+bool samePhase(const PictureRecord& before, const PictureRecord& now) {
+  const bool back = now.button_event != rt::Timestamp{} && now.trigger < before.trigger;
+  return before.mode == now.mode && !back;
+}
+
 /// A phase lasts from its first commit to the next phase's first; the last one to its last
 /// commit, whose picture then does not count: it has no duration yet.
 double distinctSetsPerSecond(const std::vector<const PictureRecord*>& shown) {
   std::size_t sets = 0;
   double seconds = 0;
   for (std::size_t begin = 0, end = 0; begin < shown.size(); begin = end) {
-    const Mode mode = shown[begin]->mode;
-    while (end < shown.size() && shown[end]->mode == mode) ++end;
-    if (!playing(mode)) continue;
+    end = begin + 1;
+    while (end < shown.size() && samePhase(*shown[end - 1], *shown[end])) ++end;
+    if (!playing(shown[begin]->mode)) continue;
     const std::size_t closing = end < shown.size() ? end : end - 1;
     std::set<std::uint64_t> distinct;
     for (std::size_t i = begin; i < closing; ++i) distinct.insert(shown[i]->trigger);

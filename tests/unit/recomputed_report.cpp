@@ -206,7 +206,9 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
     const auto trigger = now["trigger"].get<std::int64_t>();
     const bool playing = mode == "live" || mode == "delayed";
     const json* before = i > 0 ? &pictures[i - 1] : nullptr;
-    if (before != nullptr && (*before)["mode"] != now["mode"]) ++phase;
+    const bool pressed_back =
+        before != nullptr && now["button_event_ns"] != 0 && now["trigger"] < (*before)["trigger"];
+    if (before != nullptr && ((*before)["mode"] != now["mode"] || pressed_back)) ++phase;
     if (playing && i + 1 < pictures.size()) {
       playing_s += static_cast<double>(ns(pictures[i + 1], "commit") - ns(now, "commit")) * 1e-9;
       sets.emplace(phase, trigger);
