@@ -3,10 +3,15 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "hal/camera.h"
 
 namespace hal {
+
+/// In place of a trigger source: a camera without a hardware trigger runs at its own rate, and
+/// its frames go to the nearest edge. For cross-checks, never for a rig.
+inline constexpr std::string_view kFreeRunning = "free-running";
 
 /// Everything that must be in force in a camera before its first frame counts: pushed
 /// as a whole and read back, because cameras forget their settings with their power.
@@ -21,7 +26,7 @@ struct CameraProfile {
   double exposure_us = 1000;  ///< all automatic functions are switched off
   double gain_db = 0;
   std::array<double, 3> white_balance_rgb{1, 1, 1};  ///< in the camera; equal for all of a rig
-  std::string trigger_source = "Line1";
+  std::string trigger_source = "Line1";              ///< or kFreeRunning
 
   std::uint32_t packet_size_bytes = 9000;  ///< IP datagram; explicit, never negotiated
   std::uint32_t packet_delay_ns = 0;       ///< between two packets, beyond the link's own pace

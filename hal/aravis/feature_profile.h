@@ -15,6 +15,7 @@ struct FeatureSetting {
   std::variant<std::string, std::int64_t, double> value;
   /// A camera without this feature is fine: it has nothing to switch off.
   bool optional = false;
+  std::string older_name = {};  ///< of the same feature, before the standard; empty: none
 };
 
 /// The profile as settings in the order in which a camera accepts them: the format before

@@ -78,9 +78,12 @@ std::expected<void, std::string> pushProfile(ArvCamera* camera, const CameraProf
                            ": check the camera's model and its [cameras] settings");
   };
   for (const FeatureSetting& setting : featureSettings(profile)) {
-    if (setting.optional && !has(device, setting.name)) continue;
-    const Outcome wrong = std::visit(
-        [&](const auto& wanted) { return set(device, setting.name, wanted); }, setting.value);
+    const bool standard = has(device, setting.name);
+    if (setting.optional && !standard) continue;
+    const std::string& name =
+        standard || setting.older_name.empty() ? setting.name : setting.older_name;
+    const Outcome wrong =
+        std::visit([&](const auto& wanted) { return set(device, name, wanted); }, setting.value);
     if (wrong) return fail(*wrong);
   }
 

@@ -52,6 +52,13 @@ TEST(FeatureProfile, SwitchesEveryAutomaticFunctionOffBeforeItsManualValue) {
   EXPECT_GT(at("TriggerMode"), at("TriggerSource"));
 }
 
+TEST(FeatureProfile, LeavesTheTriggerOffForACameraThatRunsFree) {
+  const auto settings = featureSettings({.trigger_source = std::string(hal::kFreeRunning)});
+  const auto mode = std::ranges::find(settings, std::string("TriggerMode"), &FeatureSetting::name);
+  ASSERT_NE(mode, settings.end());
+  EXPECT_EQ(std::get<std::string>(mode->value), "Off");
+}
+
 TEST(FeatureProfile, AcceptsACamerasRoundingButNotAnotherValue) {
   EXPECT_TRUE(inForce(1000, 1008));
   EXPECT_TRUE(inForce(0, 0.004));
