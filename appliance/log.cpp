@@ -1,16 +1,16 @@
 #include "appliance/log.h"
 
 #include <cstdio>
+#include <cstdlib>
 
 #include <systemd/sd-daemon.h>
-#include <unistd.h>
 
 namespace appliance {
 namespace {
 
 void write(const char* level, const char* word, std::string_view line) {
-  static const bool terminal = isatty(STDERR_FILENO) != 0;
-  std::fprintf(stderr, "%s%.*s\n", terminal ? word : level, static_cast<int>(line.size()),
+  static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
+  std::fprintf(stderr, "%s%.*s\n", journal ? level : word, static_cast<int>(line.size()),
                line.data());
 }
 

@@ -4,8 +4,8 @@
 
 namespace appliance {
 
-/// Lines for people, on standard error with syslog levels, which the journal understands.
-/// On a terminal the level is a word.
+/// Lines for people, on standard error: with syslog levels where the journal reads them, else
+/// with words.
 ///
 /// Threads  main.
 /// RT       Not safe.

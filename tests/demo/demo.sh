@@ -200,7 +200,7 @@ start_daemon() {  # RUN-FOLDER
   wait_for_line "$daemon" "$1/kagamid.log" 'running: ' 900 ||
     broken kagamid "$1/kagamid.log" 'its message says what to do'
   # What is less than configured, and the keys of an interactive run.
-  sed -n 's/^<4>/demo: kagamid: /p; s/^keys: /demo: keys: /p' "$1/kagamid.log"
+  sed -n 's/^warning: /demo: kagamid: /p; s/^keys: /demo: keys: /p' "$1/kagamid.log"
 }
 
 watch_run() {  # RUN-FOLDER
