@@ -71,7 +71,7 @@ TEST(FakeCameraOfAravis, IsConfiguredReceivedAndShownByTheDaemon) {
                              KAGAMID_CONFIG,                                                //
                              "--set",        "rig.file=" + (folder / "rig.toml").string(),  //
                              "--set",        R"(cameras.addresses=["127.0.0.1"])",          //
-                             "--set",        "cameras.trigger_source=free-running",                //
+                             "--set",        "cameras.trigger_source=free-running",         //
                              "--set",        "cameras.packet_size_bytes=1500",              //
                              "--set",        "trigger.wire_port=" + wire.port(),            //
                              "--set",        "trigger.rate_hz=25",                          //
