@@ -95,8 +95,8 @@ struct Config {
     bool require = false;  ///< refuse to start without the permissions, instead of degrading
     ThreadSchedule trigger{rt::SchedPolicy::kFifo, 80, {}};
     ThreadSchedule receive{rt::SchedPolicy::kFifo, 70, {}};
-    ThreadSchedule render{rt::SchedPolicy::kFifo, 60, {}};
-    ThreadSchedule draw{rt::SchedPolicy::kFifo, 55, {}};  ///< workers of a software renderer
+    ThreadSchedule render{rt::SchedPolicy::kFifo, 75, {}};
+    ThreadSchedule draw{rt::SchedPolicy::kFifo, 74, {}};  ///< workers of a software renderer
     ThreadSchedule panel{};
     bool operator==(const Realtime&) const = default;
   };

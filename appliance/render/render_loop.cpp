@@ -6,6 +6,7 @@
 
 #include "appliance/director/status_line.h"
 #include "appliance/geometry/warp_planner.h"
+#include "rt/periodic_loop.h"
 
 namespace appliance {
 namespace {
@@ -34,6 +35,7 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
     (void)parts_.board.frame_ready.waitUntil(rt::now() + parameters_.trigger_period);
+    rt::sleepUntil(rest_until_);
     turn();
   }
   recordFlips();
@@ -114,6 +116,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     ++counters_.skipped;
     return false;
   }
+  rest_until_ = *commit + (*commit - wake) * 2 / 3;
   ++counters_.pictures;
   if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
   picture_id_ = record.picture_id;
