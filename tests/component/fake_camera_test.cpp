@@ -18,7 +18,8 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Somebody who listens on the trigger wire, so that the emulated line has a far end. The fake
-/// camera has no hardware trigger: it runs free at the rate of the daemon's triggers.
+/// camera has no hardware trigger and runs free at 25 Hz: beside triggers at 20 Hz its frames
+/// come at every phase, and those in the first half of a period have an edge to go to.
 class SilentWire {
  public:
   SilentWire() {
@@ -74,7 +75,7 @@ TEST(FakeCameraOfAravis, IsConfiguredReceivedAndShownByTheDaemon) {
                              "--set",        "cameras.trigger_source=free-running",         //
                              "--set",        "cameras.packet_size_bytes=1500",              //
                              "--set",        "trigger.wire_port=" + wire.port(),            //
-                             "--set",        "trigger.rate_hz=25",                          //
+                             "--set",        "trigger.rate_hz=20",                          //
                              "--set",        "history.sets=40",                             //
                              "--set",        "control.bus=none",                            //
                              "--set",        "state.trace=" + (folder / "trace.jsonl").string()},
