@@ -312,9 +312,11 @@ Appliance::~Appliance() {
 }
 
 void Appliance::stopPipeline() {
-  trigger_thread_ = {};
-  // Frames of the last triggers are still on the wire.
-  std::this_thread::sleep_for(2 * period_);
+  if (trigger_thread_.joinable()) {
+    trigger_thread_ = {};
+    // Frames of the last triggers are still on the wire.
+    std::this_thread::sleep_for(2 * period_);
+  }
   for (const auto& camera : cameras_) {
     if (camera) camera->stop();
   }
