@@ -11,6 +11,9 @@
 namespace appliance {
 namespace {
 
+// A frame may wait in its socket for three periods: one of them at most is the pictures'.
+constexpr double kShareOfPictures = 0.6;
+
 hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
                           hal::PixelFormat format) {
   return {.pixels = frame.pixels,
@@ -29,13 +32,14 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
             .zoom = parameters.zoom},
       stored_(parts.history, parts.board.edges),
       director_(parameters.director),
-      views_(parts.rig.cameras.size()) {}
+      views_(parts.rig.cameras.size()),
+      allowance_(kShareOfPictures, parameters.trigger_period) {}
 
 void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
     (void)parts_.board.frame_ready.waitUntil(rt::now() + parameters_.trigger_period);
-    rt::sleepUntil(rest_until_);
+    rt::sleepUntil(allowance_.nextBegin());
     turn();
   }
   recordFlips();
@@ -116,7 +120,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     ++counters_.skipped;
     return false;
   }
-  rest_until_ = *commit + (*commit - wake) * 2 / 3;
+  allowance_.spend(wake, *commit);
   ++counters_.pictures;
   if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
   picture_id_ = record.picture_id;

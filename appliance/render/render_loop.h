@@ -14,6 +14,7 @@
 #include "appliance/geometry/target_track.h"
 #include "appliance/render/command_queue.h"
 #include "appliance/render/history_views.h"
+#include "appliance/render/render_allowance.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
 #include "rt/latest_value.h"
@@ -66,8 +67,7 @@ struct RenderParameters {
 /// Threads  run(): the `render` thread. status(): one reader.
 /// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
 ///          monitored, not RT safe. It pins at most one frame at a time. It stands above receiving
-///          and rests after each picture for two thirds of what that took: capture keeps 40 % of
-///          every CPU.
+///          and keeps to an allowance, so that capture has 40 % of every CPU.
 class RenderLoop {
  public:
   RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
@@ -112,7 +112,7 @@ class RenderLoop {
   rt::Timestamp first_command_;  // when the oldest of them was given; the epoch: none
 
   Wanted on_screen_;
-  rt::Timestamp rest_until_;  // receiving has the processors until then
+  RenderAllowance allowance_;
   std::uint64_t picture_id_ = 0;
   RenderStatus counters_;
   rt::Timestamp second_begin_;  // of the second that is being counted
