@@ -33,6 +33,8 @@ bin=$root/build/release/bin
 rate_of_recording=30   # Hz: a 1 Gb/s link carries at most 55 of its portrait frames a second
 
 zoom=1.0
+picture=1280x720
+filmed=yes
 seconds=60
 cameras=20
 size=1280x1024
@@ -98,6 +100,7 @@ end_process() {  # PID TENTHS
 cleanup() {
   end_process "$daemon" 100
   end_process "$emulator" 50
+  keep_run
 }
 trap cleanup EXIT
 trap 'exit 129' HUP
@@ -124,6 +127,33 @@ wait_for_line() {  # PID LOG PATTERN TENTHS: 1 when it did not come
     sleep 0.1
     left=$((left - 1))
   done
+}
+
+# ---- the folder of a run ---------------------------------------------------------------------
+# A run writes into memory where there is room, so that no disk works on the measured processors;
+# FOLDER/run leads there meanwhile and is the folder itself afterwards.
+scratch=
+scratch_parent=/dev/shm
+scratch_kib=2097152  # film and trace of a run of ten minutes
+
+make_run() {  # FOLDER
+  rm -rf "$1/run"
+  mkdir -p "$1"
+  free_kib=$(df -kP "$scratch_parent" 2>/dev/null | awk 'NR == 2 { print $4 }')
+  if [ "${free_kib:-0}" -ge "$scratch_kib" ]; then
+    scratch=$(mktemp -d "$scratch_parent/kagami-demo.XXXXXX") || scratch=
+  fi
+  if [ -n "$scratch" ]; then ln -s "$scratch" "$1/run"; else mkdir "$1/run"; fi
+  scratch_link=$1/run
+  mkdir -p "$1/run/pictures" "$1/run/state"
+}
+
+keep_run() {
+  [ -n "$scratch" ] || return 0
+  chmod 755 "$scratch"
+  rm -f "$scratch_link"
+  mv "$scratch" "$scratch_link" || say "what was recorded stays in $scratch" >&2
+  scratch=
 }
 
 # ---- one scene -----------------------------------------------------------------------------
@@ -156,6 +186,8 @@ write_config() {  # RUN-FOLDER RATE
   addresses=$(awk '/^\[\[camera\]\]/ { printf "%s\"127.0.0.%d\"", n ? ", " : "", n + 1; ++n }' \
     "$1/rig.toml")
   refresh_hz=$(awk -v rate="$2" 'BEGIN { n = 1; while (n * rate < 60) ++n; printf "%.3f", n * rate }')
+  record=
+  [ -z "$filmed" ] || record=$1/pictures
   panel=scripted
   [ -z "$interactive" ] || panel=terminal
   cat <<TEXT
@@ -166,13 +198,15 @@ addresses = [$addresses]
 [trigger]
 rate_hz = $2
 [display]
+width_px = ${picture%x*}
+height_px = ${picture#*x}
 refresh_hz = $refresh_hz
 zoom = $zoom
 [panel]
 backend = "$panel"
 script = "$1/panel.txt"
 [record]
-directory = "$1/pictures"
+directory = "$record"
 video_hz = 10
 [state]
 directory = "$1/state"
@@ -249,12 +283,24 @@ faults_of() {  # REPORT
     }' "$1"
 }
 
+make_report() {  # FOLDER
+  "$bin/kagami" report --trace "$1/run/trace.jsonl" --wire-log "$1/run/wire.csv" \
+    --emulator-stats "$1/run/emulator.json" --out "$1/report.json" --table > "$1/report.txt" ||
+    fail "kagami report failed (above) on $1/run/trace.jsonl"
+}
+
+judge() {  # NAME FOLDER
+  faults=$(faults_of "$2/report.json")
+  if [ -n "$faults" ]; then
+    printf '%s\n' "$faults" | sed "s/^/demo: $1: NOT GOOD: /" >&2
+    verdict=1
+  fi
+}
+
 # Report and film are made from what was recorded, whatever the verdict.
 conclude() {  # NAME FOLDER
   run=$2/run
-  "$bin/kagami" report --trace "$run/trace.jsonl" --wire-log "$run/wire.csv" \
-    --emulator-stats "$run/emulator.json" --out "$2/report.json" --table > "$2/report.txt" ||
-    fail "kagami report failed (above) on $run/trace.jsonl"
+  make_report "$2"
   cat "$2/report.txt"
   say "$1: making the film"
   "$bin/kagami" film --record "$run/pictures" --out "$2/demo.mp4" \
@@ -268,18 +314,13 @@ conclude() {  # NAME FOLDER
     [ ! -f "$still" ] || cp "$still" "$2/$mode.png"
   done
   say "$1: demo.mp4, stills, contact-sheet.png, report.json and report.txt are in $2"
-  faults=$(faults_of "$2/report.json")
-  if [ -n "$faults" ]; then
-    printf '%s\n' "$faults" | sed "s/^/demo: $1: NOT GOOD: /" >&2
-    verdict=1
-  fi
+  judge "$1" "$2"
 }
 
 run_scene() {  # NAME FOLDER RATE EMULATOR-OPTION...
   name=$1; folder=$2; rate=$3; shift 3
   run=$folder/run
-  rm -rf "$run"
-  mkdir -p "$run/pictures" "$run/state"
+  make_run "$folder"
   panel_script > "$run/panel.txt"
   say "$name: starting the emulated cameras"
   start_emulator "$run" "$@"
@@ -288,12 +329,38 @@ run_scene() {  # NAME FOLDER RATE EMULATOR-OPTION...
   start_daemon "$run"
   watch_run "$run"
   stop_programs "$run"
+  keep_run
   conclude "$name" "$folder"
 }
 
 run_stamp() {  # FOLDER
   run_scene stamp "$1" "$fps" --scene stamp --cameras "$cameras" --size "$size" \
     --rig-out "$1/run/rig.toml"
+  [ -n "$interactive" ] || run_full_hd "$1"
+}
+
+# How many frame sets a second the same cameras give on a screen of full size: live, not filmed.
+run_full_hd() {  # FOLDER
+  run=$1/full-hd/run
+  usual="picture=$picture filmed=$filmed seconds=$seconds"
+  picture=1920x1080
+  filmed=
+  [ "$seconds" -le 20 ] || seconds=20
+  make_run "$1/full-hd"
+  echo '# phase 0 live' > "$run/panel.txt"
+  say "full size: the same cameras on a screen of $picture"
+  start_emulator "$run" --scene stamp --cameras "$cameras" --size "$size" --rig-out "$run/rig.toml"
+  write_config "$run" "$fps" > "$run/kagamid.toml"
+  start_daemon "$run"
+  watch_run "$run"
+  stop_programs "$run"
+  keep_run
+  make_report "$1/full-hd"
+  awk '/^shown:/ { rate = $2 } /^after/ { lost = $(NF - 3) }
+    END { printf "highest sustained rate at 1920x1080: %s frame sets a second (%s frames lost)\n",
+      rate, lost }' "$1/full-hd/report.txt" | tee -a "$1/report.txt"
+  judge 'full size' "$1/full-hd"
+  eval "$usual"
 }
 
 run_folder() {  # NAME FOLDER RATE SCENE-FOLDER
