@@ -65,13 +65,34 @@ struct PageFlip {
   std::uint64_t vblank;     ///< that vblank's number
 };
 
+/// What is known of a screen's vblanks, and of what a picture costs: enough to predict flips.
+/// Vblank n is at `at` + (n - `vblank`) * `period_ns`. Trivially copyable.
+struct DisplayTiming {
+  std::uint64_t vblank = 0;    ///< a recent vblank's number
+  rt::Timestamp at;            ///< its instant: the estimate from many stamps, not its own stamp
+  double period_ns = 0;        ///< above 0
+  double stamp_jitter_ns = 0;  ///< rms of the stamps about the estimate
+  rt::Nanoseconds draw{};      ///< from warp_submit to commit, nearly always
+};
+
+enum class ScreenState : std::uint8_t {
+  kShowing,   ///< pictures come on screen
+  kNoScreen,  ///< nothing connected, or nothing that can be lit; looked for all the time
+  kReleased,  ///< given away on request
+};
+
+struct ScreenStatus {
+  ScreenState state = ScreenState::kShowing;
+  std::array<char, 128> message{};  ///< why nothing or less is shown, and what to do; may be empty
+};
+
 /// A screen that shows one warped picture at a time.
 ///
 /// Threads  One caller: the render thread. The object is made (EGL context included) on a
 ///          SCHED_OTHER thread and handed over: the first call binds the context to its caller.
 /// RT       Nothing here is RT safe; GL and commits may block. The caller's budget is monitored.
-/// Errors   kBusy: the last commit has not flipped yet. kDeviceLost: no screen; goes on when it
-///          is back. Both leave the object usable.
+/// Errors   kBusy: the last commit has not flipped yet. kDeviceLost: no screen, or released; goes
+///          on when it is back. Both leave the object usable.
 class Display {
  public:
   virtual ~Display() = default;
@@ -89,6 +110,15 @@ class Display {
 
   /// Page flips since the last call, oldest first.
   [[nodiscard]] virtual std::optional<PageFlip> tryPopFlip() = 0;
+
+  /// None while vblanks are not known: no screen, or too few flips so far.
+  [[nodiscard]] virtual std::optional<DisplayTiming> timing() const = 0;
+
+  [[nodiscard]] virtual ScreenStatus screen() const = 0;
+
+  /// Lets go of the screen so that another program can show something, and takes it again.
+  virtual void releaseScreen() = 0;
+  virtual void takeScreen() = 0;
 
   /// The caller's last call before another thread calls or destroys the display.
   virtual void detach() = 0;
