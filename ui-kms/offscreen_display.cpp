@@ -90,6 +90,10 @@ std::optional<hal::PageFlip> OffscreenDisplay::tryPopFlip() {
   return chain_.tryPopFlip(rt::now());
 }
 
+std::optional<hal::DisplayTiming> OffscreenDisplay::timing() const {
+  return std::nullopt;
+}
+
 std::optional<hal::PageFlip> OffscreenDisplay::committedFlip() const {
   return chain_.committedFlip();
 }

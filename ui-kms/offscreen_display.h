@@ -43,6 +43,11 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
 
   /// Why pictures carry no text; empty where they do.
   [[nodiscard]] const std::string& textWarning() const { return renderer_->textWarning(); }
+  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override;
+  [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
+  /// Nobody else can show anything here.
+  void releaseScreen() override {}
+  void takeScreen() override {}
   void detach() override { renderer_->context().release(); }
 
  private:
