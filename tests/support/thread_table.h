@@ -34,7 +34,7 @@ struct TableRow {
   for (const char* family : {"recv", "draw"}) {
     if (task.starts_with(family)) return family;
   }
-  for (const char* library : {"kagamid", "gmain", "gdbus"}) {
+  for (const char* library : {"kagamid", "gmain", "gdbus", "arv_gv_heartbea"}) {
     if (task.starts_with(library)) return "main";  // SCHED_OTHER, as main, which made it
   }
   return task;
