@@ -47,6 +47,14 @@ class LineWriter {
   std::size_t used_ = 0;
 };
 
+/// How long ago the stopped moment was when it was stopped; nothing for the newest one.
+void writeAge(LineWriter& out, rt::Nanoseconds delay) {
+  constexpr rt::Nanoseconds kShownAsZero = std::chrono::milliseconds(5);
+  if (delay < kShownAsZero) return;
+  out << " -";
+  out.seconds(delay, 2);
+}
+
 void writeMode(LineWriter& out, const Shot& shot) {
   switch (shot.mode) {
     case Mode::kLive:
@@ -57,12 +65,12 @@ void writeMode(LineWriter& out, const Shot& shot) {
       out.seconds(shot.delay, 1);
       break;
     case Mode::kFrozen:
-      out << "FROZEN -";
-      out.seconds(shot.delay, 2);
+      out << "FROZEN";
+      writeAge(out, shot.delay);
       break;
     case Mode::kSweep:
-      out << "SWEEP -";
-      out.seconds(shot.delay, 2);
+      out << "SWEEP";
+      writeAge(out, shot.delay);
       break;
   }
 }

@@ -38,6 +38,13 @@ TEST(StatusLine, RoundsSecondsAcrossTheDecimalPoint) {
   EXPECT_EQ(line(shot), "FROZEN -2.00 s   view 1/20");
 }
 
+TEST(StatusLine, GivesTheNewestMomentNoAge) {
+  Shot shot{.mode = Mode::kFrozen, .trigger = 9, .delay = milliseconds(4)};
+  EXPECT_EQ(line(shot), "FROZEN   view 1/20");
+  shot.mode = Mode::kSweep;
+  EXPECT_EQ(line(shot), "SWEEP   view 1/20");
+}
+
 TEST(StatusLine, SaysWhatIsShownInPlaceOfTheWantedView) {
   Shot shot{.substitute = Substitute::kLost, .camera_wanted = 6, .camera_shown = 7, .trigger = 9};
   EXPECT_EQ(line(shot), "LIVE   view 7/20   camera 7 lost: showing 8");
