@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "hal/camera.h"
+#include "hal/display_timing.h"
 #include "rt/clock.h"
 #include "rt/result.h"
 
@@ -63,16 +64,6 @@ struct PageFlip {
   std::uint64_t picture_id;
   rt::Timestamp page_flip;  ///< the vblank at which the picture came on screen
   std::uint64_t vblank;     ///< that vblank's number
-};
-
-/// What is known of a screen's vblanks, and of what a picture costs: enough to predict flips.
-/// Vblank n is at `at` + (n - `vblank`) * `period_ns`. Trivially copyable.
-struct DisplayTiming {
-  std::uint64_t vblank = 0;    ///< a recent vblank's number
-  rt::Timestamp at;            ///< its instant: the estimate from many stamps, not its own stamp
-  double period_ns = 0;        ///< above 0
-  double stamp_jitter_ns = 0;  ///< rms of the stamps about the estimate
-  rt::Nanoseconds draw{};      ///< from warp_submit to commit, nearly always
 };
 
 enum class ScreenState : std::uint8_t {

@@ -53,7 +53,8 @@ OffscreenDisplay::OffscreenDisplay(const OffscreenConfig& config,
                                    std::unique_ptr<Renderer> renderer)
     : config_(config),
       renderer_(std::move(renderer)),
-      chain_(config.buffers, FlipGrid(rt::now(), config.refresh_hz)) {
+      chain_(config.buffers, FlipGrid(rt::now(), config.refresh_hz)),
+      pacer_(config.refresh_hz) {
   for (std::uint32_t i = 0; i < config.buffers; ++i) {
     targets_.push_back(makeRenderTarget(config.renderer.width_px, config.renderer.height_px));
   }
@@ -79,19 +80,20 @@ rt::Result<hal::RenderInstants> OffscreenDisplay::render(const hal::WarpPlan* pl
   if (!buffer) return std::unexpected(buffer.error());
   const hal::RenderInstants instants = renderer_->draw(targets_[*buffer], plan, status);
   chain_.finishDraw(*buffer);
+  warp_submit_ = instants.warp_submit;
   return instants;
 }
 
 rt::Result<rt::Timestamp> OffscreenDisplay::commit(std::uint64_t picture_id) {
-  return chain_.commit(picture_id, rt::now());
+  const auto commit = chain_.commit(picture_id, rt::now());
+  if (commit) pacer_.onPicture(warp_submit_, *commit);
+  return commit;
 }
 
 std::optional<hal::PageFlip> OffscreenDisplay::tryPopFlip() {
-  return chain_.tryPopFlip(rt::now());
-}
-
-std::optional<hal::DisplayTiming> OffscreenDisplay::timing() const {
-  return std::nullopt;
+  const auto flip = chain_.tryPopFlip(rt::now());
+  if (flip) pacer_.onVblank(flip->vblank, flip->page_flip);
+  return flip;
 }
 
 std::optional<hal::PageFlip> OffscreenDisplay::committedFlip() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hal/display.h"
+#include "ui-kms/frame_pacer.h"
 #include "ui-kms/picture_source.h"
 #include "ui-kms/renderer.h"
 #include "ui-kms/swap_chain.h"
@@ -43,7 +44,9 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
 
   /// Why pictures carry no text; empty where they do.
   [[nodiscard]] const std::string& textWarning() const { return renderer_->textWarning(); }
-  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override;
+  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override {
+    return pacer_.timing();
+  }
   [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
   /// Nobody else can show anything here.
   void releaseScreen() override {}
@@ -57,6 +60,8 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   OffscreenConfig config_;
   std::unique_ptr<Renderer> renderer_;
   SwapChain chain_;
+  FramePacer pacer_;
+  rt::Timestamp warp_submit_;  // of the picture drawn last
   std::vector<RenderTarget> targets_;
 };
 
