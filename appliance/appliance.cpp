@@ -353,7 +353,8 @@ Status Appliance::status() const {
                 .view_wanted = render.shot.camera_wanted,
                 .view_shown = render.shot.camera_shown,
                 .delay_ms = to_ms(render.shot.delay),
-                .history_ms = to_ms(history_->sets() * period_),
+                .history_ms = to_ms(
+                    std::min<std::uint64_t>(board_.edges.newest(), history_->sets()) * period_),
                 .target_m = target_m_,
                 .shown_hz = render.shown_hz,
                 .triggers = board_.edges.newest(),

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -12,6 +13,8 @@
 
 namespace appliance {
 namespace {
+
+constexpr double kLongestDelay_s = 3600;  // far more than memory holds; the daemon knows its own
 
 ControlClient connect(const ControlPlace& place) {
   auto client = ControlClient::open(place.bus, place.name);
@@ -49,9 +52,11 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   mode->callback([&place, name] { expectDone(connect(place).setMode(*name)); });
 
   CLI::App* delay = kagami.add_subcommand("delay", "Show what was this long ago; 0 is live");
-  const auto delay_ms = std::make_shared<std::uint32_t>(0);
-  delay->add_option("MILLISECONDS", *delay_ms)->required();
-  delay->callback([&place, delay_ms] { expectDone(connect(place).setDelay(*delay_ms)); });
+  const auto delay_s = std::make_shared<double>(0);
+  delay->add_option("SECONDS", *delay_s)->required()->check(CLI::Range(0.0, kLongestDelay_s));
+  delay->callback([&place, delay_s] {
+    expectDone(connect(place).setDelay(static_cast<std::uint32_t>(std::lround(*delay_s * 1e3))));
+  });
 
   CLI::App* view = kagami.add_subcommand("view", "Show another view");
   const auto number = std::make_shared<std::uint32_t>(0);
