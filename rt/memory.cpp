@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -77,17 +78,42 @@ std::size_t hugePageBytes() {
   return valueOf("/proc/meminfo", "Hugepagesize:").value_or(0) * kKibibyte;
 }
 
-bool transparentHugePagesAllowed() {
-  std::ifstream in("/sys/kernel/mm/transparent_hugepage/enabled");
+bool transparentHugePagesAllowed(ArenaBacking backing) {
+  const bool in_file = backing == ArenaBacking::kMemoryFile;  // the kernel has a switch for each
+  std::ifstream in(fs::path("/sys/kernel/mm/transparent_hugepage") /
+                   (in_file ? "shmem_enabled" : "enabled"));
   std::string line;
   std::getline(in, line);
-  return line.find("[always]") != std::string::npos || line.find("[madvise]") != std::string::npos;
+  return line.find("[always]") != std::string::npos ||
+         line.find(in_file ? "[advise]" : "[madvise]") != std::string::npos;
 }
 
-std::byte* map(std::size_t bytes, int extra_flags) {
-  void* const address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                             MAP_PRIVATE | MAP_ANONYMOUS | extra_flags, -1, 0);
-  return address == MAP_FAILED ? nullptr : static_cast<std::byte*>(address);
+struct Mapping {
+  std::byte* data = nullptr;  // none: os_errno says why
+  UniqueFd file;
+  int os_errno = 0;
+};
+
+Mapping refusedMapping() {
+  return {.data = nullptr, .file = {}, .os_errno = errno};
+}
+
+Mapping map(std::size_t bytes, ArenaBacking backing, bool from_pool) {
+  Mapping mapping;
+  int flags = MAP_PRIVATE | MAP_ANONYMOUS | (from_pool ? MAP_HUGETLB : 0);
+  if (backing == ArenaBacking::kMemoryFile) {
+    const unsigned pool_flag = from_pool ? MFD_HUGETLB : 0;
+    mapping.file = UniqueFd(memfd_create("kagami", MFD_CLOEXEC | MFD_ALLOW_SEALING | pool_flag));
+    if (!mapping.file.valid() || ftruncate(mapping.file.get(), static_cast<off_t>(bytes)) != 0 ||
+        fcntl(mapping.file.get(), F_ADD_SEALS, F_SEAL_SHRINK) != 0) {
+      return refusedMapping();
+    }
+    flags = MAP_SHARED;
+  }
+  void* const address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, flags, mapping.file.get(), 0);
+  if (address == MAP_FAILED) return refusedMapping();
+  mapping.data = static_cast<std::byte*>(address);
+  return mapping;
 }
 
 /// Makes every page present; the error number where the kernel could not.
@@ -159,7 +185,8 @@ std::uint64_t availableMemoryBytes(const fs::path& proc, const fs::path& cgroup)
   }
 }
 
-Result<LockedArena> LockedArena::create(std::size_t bytes, std::size_t margin_bytes) {
+Result<LockedArena> LockedArena::create(std::size_t bytes, std::size_t margin_bytes,
+                                        ArenaBacking backing) {
   if (bytes == 0) return std::unexpected(Error{Errc::kInvalidConfig, 0, "arena: zero bytes"});
   const auto noMemory = [](int error, const char* where) {
     return std::unexpected(Error{Errc::kNoMemory, error, where});
@@ -171,14 +198,14 @@ Result<LockedArena> LockedArena::create(std::size_t bytes, std::size_t margin_by
   }
 
   ArenaReport report;
-  std::byte* data = nullptr;
+  Mapping mapping;
   if (huge_page_bytes != 0) {  // pool pages are set apart already: MemAvailable excludes them
     report = {
         .bytes = roundUp(bytes, huge_page_bytes), .page_kind = PageKind::kHuge, .locked = true};
-    data = map(report.bytes, MAP_HUGETLB);
+    mapping = map(report.bytes, backing, /*from_pool=*/true);
   }
-  if (data == nullptr) {
-    const bool transparent = huge_page_bytes != 0 && transparentHugePagesAllowed();
+  if (mapping.data == nullptr) {
+    const bool transparent = huge_page_bytes != 0 && transparentHugePagesAllowed(backing);
     const std::size_t unit = transparent ? huge_page_bytes : smallPageBytes();
     report = {.bytes = roundUp(bytes, unit),
               .page_kind = transparent ? PageKind::kTransparentHuge : PageKind::kSmall};
@@ -186,32 +213,35 @@ Result<LockedArena> LockedArena::create(std::size_t bytes, std::size_t margin_by
     if (available < margin_bytes || report.bytes > available - margin_bytes) {
       return noMemory(ENOMEM, "arena: more than the memory available");
     }
-    data = map(report.bytes, 0);
-    if (data == nullptr) return noMemory(errno, "arena: mmap");
-    if (transparent && madvise(data, report.bytes, MADV_HUGEPAGE) != 0) {
+    mapping = map(report.bytes, backing, /*from_pool=*/false);
+    if (mapping.data == nullptr) return noMemory(mapping.os_errno, "arena: mmap");
+    if (transparent && madvise(mapping.data, report.bytes, MADV_HUGEPAGE) != 0) {
       report.page_kind = PageKind::kSmall;
     }
   }
 
-  LockedArena arena(data, report);
-  madvise(data, report.bytes, MADV_DONTDUMP);
+  LockedArena arena(mapping.data, std::move(mapping.file), report);
+  madvise(arena.data_, report.bytes, MADV_DONTDUMP);
   if (const int error = prefault(arena.bytes()); error != 0) {
     return noMemory(error, "arena: prefault");
   }
   if (report.page_kind != PageKind::kHuge) {
-    arena.report_.locked = mlock(data, report.bytes) == 0;
+    arena.report_.locked = mlock(arena.data_, report.bytes) == 0;
     arena.report_.os_errno = arena.report_.locked ? 0 : errno;
   }
   return arena;
 }
 
 LockedArena::LockedArena(LockedArena&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), report_(std::exchange(other.report_, {})) {}
+    : data_(std::exchange(other.data_, nullptr)),
+      file_(std::move(other.file_)),
+      report_(std::exchange(other.report_, {})) {}
 
 LockedArena& LockedArena::operator=(LockedArena&& other) noexcept {
   if (this != &other) {
     release();
     data_ = std::exchange(other.data_, nullptr);
+    file_ = std::move(other.file_);
     report_ = std::exchange(other.report_, {});
   }
   return *this;
@@ -224,6 +254,7 @@ LockedArena::~LockedArena() {
 void LockedArena::release() noexcept {
   if (data_ != nullptr) munmap(data_, report_.bytes);
   data_ = nullptr;
+  file_ = UniqueFd();
   report_ = {};
 }
 

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "rt/result.h"
+#include "rt/unique_fd.h"
 
 namespace rt {
 
@@ -24,6 +26,11 @@ enum class PageKind : std::uint8_t {
   kSmall,
 };
 [[nodiscard]] const char* toString(PageKind kind) noexcept;
+
+enum class ArenaBacking : std::uint8_t {
+  kPrivate,     ///< memory that belongs to nobody else
+  kMemoryFile,  ///< a file in memory that cannot shrink: its pages can become dma-bufs (rt::DmaBuf)
+};
 
 struct ArenaReport {
   std::size_t bytes = 0;  ///< as mapped: the request rounded up to whole pages
@@ -47,7 +54,8 @@ class LockedArena {
   static constexpr std::size_t kMarginBytes = std::size_t{512} * 1024 * 1024;
 
   [[nodiscard]] static Result<LockedArena> create(std::size_t bytes,
-                                                  std::size_t margin_bytes = kMarginBytes);
+                                                  std::size_t margin_bytes = kMarginBytes,
+                                                  ArenaBacking backing = ArenaBacking::kPrivate);
 
   LockedArena() = default;
   LockedArena(LockedArena&& other) noexcept;
@@ -56,12 +64,16 @@ class LockedArena {
 
   [[nodiscard]] std::span<std::byte> bytes() const noexcept { return {data_, report_.bytes}; }
   [[nodiscard]] const ArenaReport& report() const noexcept { return report_; }
+  /// The file whose bytes these are, from its beginning; -1 where the memory is private.
+  [[nodiscard]] int memoryFile() const noexcept { return file_.get(); }
 
  private:
-  LockedArena(std::byte* data, const ArenaReport& report) noexcept : data_(data), report_(report) {}
+  LockedArena(std::byte* data, UniqueFd file, const ArenaReport& report) noexcept
+      : data_(data), file_(std::move(file)), report_(report) {}
   void release() noexcept;
 
   std::byte* data_ = nullptr;
+  UniqueFd file_;
   ArenaReport report_;
 };
 

@@ -72,8 +72,16 @@ TEST(AvailableMemory, IsZeroWhenTheKernelDoesNotSay) {
   EXPECT_EQ(system.available(), 0u);
 }
 
-TEST(LockedArena, IsAlignedZeroedWholeAndPresent) {
-  const auto arena = rt::LockedArena::create(65 * kMiB + 1, 0);
+class EveryArena : public testing::TestWithParam<rt::ArenaBacking> {};
+INSTANTIATE_TEST_SUITE_P(Backing, EveryArena,
+                         testing::Values(rt::ArenaBacking::kPrivate, rt::ArenaBacking::kMemoryFile),
+                         [](const auto& test) {
+                           return test.param == rt::ArenaBacking::kPrivate ? "Private"
+                                                                           : "MemoryFile";
+                         });
+
+TEST_P(EveryArena, IsAlignedZeroedWholeAndPresent) {
+  const auto arena = rt::LockedArena::create(65 * kMiB + 1, 0, GetParam());
   ASSERT_TRUE(arena.has_value()) << arena.error().where;
   const auto bytes = arena->bytes();
   EXPECT_GE(bytes.size(), 65 * kMiB + 1);
@@ -87,8 +95,8 @@ TEST(LockedArena, IsAlignedZeroedWholeAndPresent) {
   EXPECT_TRUE(std::ranges::all_of(resident, [](unsigned char r) { return (r & 1U) != 0; }));
 }
 
-TEST(LockedArena, IsLockedOrSaysWhyNot) {
-  const auto arena = rt::LockedArena::create(4 * kMiB, 0);
+TEST_P(EveryArena, IsLockedOrSaysWhyNot) {
+  const auto arena = rt::LockedArena::create(4 * kMiB, 0, GetParam());
   ASSERT_TRUE(arena.has_value());
   EXPECT_EQ(arena->report().locked, arena->report().os_errno == 0);
   const rt::Limits limits = rt::readLimits();
@@ -97,8 +105,8 @@ TEST(LockedArena, IsLockedOrSaysWhyNot) {
   }
 }
 
-TEST(LockedArena, RefusesMoreThanIsAvailableWithoutTryingIt) {
-  const auto arena = rt::LockedArena::create(rt::availableMemoryBytes() + 64 * kMiB, 0);
+TEST_P(EveryArena, RefusesMoreThanIsAvailableWithoutTryingIt) {
+  const auto arena = rt::LockedArena::create(rt::availableMemoryBytes() + 64 * kMiB, 0, GetParam());
   ASSERT_FALSE(arena.has_value());
   EXPECT_EQ(arena.error().code, rt::Errc::kNoMemory);
 }
@@ -116,15 +124,35 @@ TEST(LockedArena, RefusesNonsenseSizes) {
   }
 }
 
-TEST(LockedArena, MovesItsMemoryAndFreesItOnce) {
-  auto first = rt::LockedArena::create(2 * kMiB, 0);
-  auto second = rt::LockedArena::create(2 * kMiB, 0);
+TEST_P(EveryArena, MovesItsMemoryAndFreesItOnce) {
+  auto first = rt::LockedArena::create(2 * kMiB, 0, GetParam());
+  auto second = rt::LockedArena::create(2 * kMiB, 0, GetParam());
   ASSERT_TRUE(first && second);
   auto* const data = second->bytes().data();
   *first = std::move(*second);
   EXPECT_EQ(first->bytes().data(), data);
   EXPECT_TRUE(second->bytes().empty());
   first->bytes().back() = std::byte{1};
+}
+
+TEST(LockedArena, AMemoryFileHoldsItsBytesAndCannotShrink) {
+  auto arena = rt::LockedArena::create(2 * kMiB, 0, rt::ArenaBacking::kMemoryFile);
+  ASSERT_TRUE(arena);
+  arena->bytes()[kMiB] = std::byte{42};
+  std::byte read{};
+  ASSERT_EQ(pread(arena->memoryFile(), &read, 1, kMiB), 1);
+  EXPECT_EQ(read, std::byte{42});
+  EXPECT_NE(ftruncate(arena->memoryFile(), 0), 0);
+
+  const rt::LockedArena moved = std::move(*arena);
+  EXPECT_EQ(pread(moved.memoryFile(), &read, 1, kMiB), 1);
+  EXPECT_EQ(arena->memoryFile(), -1);  // NOLINT(bugprone-use-after-move)
+}
+
+TEST(LockedArena, PrivateMemoryIsNoFile) {
+  const auto arena = rt::LockedArena::create(2 * kMiB, 0);
+  ASSERT_TRUE(arena);
+  EXPECT_EQ(arena->memoryFile(), -1);
 }
 
 TEST(LockMemory, LocksOrNamesTheLimitToRaise) {

@@ -3,32 +3,12 @@
 #include <cstdint>
 #include <expected>
 #include <string>
-#include <utility>
 
-#include <unistd.h>
+#include "rt/unique_fd.h"
 
 namespace emulator {
 
-/// Owns a file descriptor.
-class UniqueFd {
- public:
-  UniqueFd() = default;
-  explicit UniqueFd(int fd) : fd_(fd) {}
-  UniqueFd(UniqueFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  UniqueFd& operator=(UniqueFd&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  UniqueFd(const UniqueFd&) = delete;
-  UniqueFd& operator=(const UniqueFd&) = delete;
-  ~UniqueFd() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_ = -1;
-};
+using rt::UniqueFd;
 
 /// "127.0.0.7" from a host-order address and back.
 [[nodiscard]] std::string addressText(std::uint32_t address);
