@@ -85,7 +85,13 @@ init=$(folder_of "$(dirname -- "$init")")/$(basename -- "$init")
 # ---- the run's own folder --------------------------------------------------------------------
 # The kernel's state and its log, one folder per run: several beds run side by side.
 run=$(mktemp -d /var/tmp/kagami-bed.XXXXXX) || die "no temporary folder in /var/tmp"
-trap 'rm -rf "$run"' EXIT
+child=
+end() {
+  # shellcheck disable=SC2015  # neither may fail the end
+  [ -n "$child" ] && kill "$child" 2>/dev/null && wait "$child" 2>/dev/null || true
+  rm -rf "$run"
+}
+trap end EXIT
 trap 'exit 129' HUP
 trap 'exit 130' INT
 trap 'exit 143' TERM
@@ -113,12 +119,15 @@ if [ -n "$virtual" ]; then
 fi
 
 # Consoles: 0 is the command's stdout, 1 its stderr, the serial line the kernel's messages.
+# In the background, so that a signal ends the kernel at once.
 rc=0
 # shellcheck disable=SC2086  # arguments are words
 ${limit:+timeout -k 5 "$limit"} "$kernel" "mem=$memory" "uml_dir=$run" umid=bed \
   root=/dev/root rootfstype=hostfs rootflags=/ ro "init=$init" quiet \
   con=null con0=null,fd:1 con1=null,fd:2 ssl=null ssl0=null,fd:3 console=ttyS0 \
-  $arguments "BED_JOB=$run/job" "BED_WRITABLE=$writable" </dev/null 3>"$log" || rc=$?
+  $arguments "BED_JOB=$run/job" "BED_WRITABLE=$writable" </dev/null 3>"$log" &
+child=$!
+wait "$child" || rc=$?
 case $rc in
   124) printf 'run_in_kernel: ended after %s s: %s\n' "$limit" "$*" >&2 ;;
   125|13[0-9]) printf 'run_in_kernel: the test kernel ended with %s:\n' "$rc" >&2

@@ -185,12 +185,12 @@ std::uint32_t GpioTrace::numberOf(const std::string& line) {
                            line + "'");
 }
 
-std::vector<GpioEvent> outputEdges(std::span<const GpioEvent> events, std::uint32_t number) {
+std::vector<GpioEvent> outputEdges(std::span<const GpioEvent> events, std::uint32_t number,
+                                   std::optional<bool> before) {
   std::vector<GpioEvent> edges;
-  std::optional<bool> level;
   for (const GpioEvent& event : events) {
-    if (event.number != number || !event.written || level == event.level) continue;
-    level = event.level;
+    if (event.number != number || !event.written || before == event.level) continue;
+    before = event.level;
     edges.push_back(event);
   }
   return edges;

@@ -41,8 +41,10 @@ class GpioTrace {
   std::vector<int> pages_;  // per CPU
 };
 
-/// The changes of one output's level, each the first write that made it.
+/// The changes of one output's level, each the write that made it. The first write is one unless
+/// the level before is told and the same.
 [[nodiscard]] std::vector<GpioEvent> outputEdges(std::span<const GpioEvent> events,
-                                                 std::uint32_t number);
+                                                 std::uint32_t number,
+                                                 std::optional<bool> before = std::nullopt);
 
 }  // namespace test
