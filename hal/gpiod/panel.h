@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <expected>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/button_panel.h"
+
+namespace hal::gpiod {
+
+struct PanelSettings {
+  std::string button_prefix = "button-";  ///< a button's line is named this and the button's name
+  std::string lamp_prefix = "lamp-";      ///< and live, delayed or frozen
+  bool active_low = true;                 ///< of the buttons: pressed is the low level
+  std::chrono::milliseconds debounce{10};
+};
+
+/// What opened, and what of the panel is less than it could be: a line each, for a person.
+struct OpenedPanel {
+  std::unique_ptr<ButtonPanel> panel;
+  std::vector<std::string> notes;
+};
+
+/// Claims the lines of the panel's buttons and lamps, on whatever chips they are. The kernel
+/// debounces; a press is stamped when the contact came to rest.
+///
+/// A button that is held while the panel opens is named and not reported as a press; its release
+/// is. Behind an expander a panel works, and a note says so.
+///
+/// Threads  As hal::ButtonPanel.
+/// Errors   No button at all, a name that exists twice, or a line that somebody holds. Missing
+///          single buttons and missing lamps are notes. While running: when a chip goes, alive()
+///          turns false, its buttons are not pressed and its lamps stay as they are.
+[[nodiscard]] std::expected<OpenedPanel, std::string> openButtonPanel(
+    const PanelSettings& settings);
+
+}  // namespace hal::gpiod
