@@ -11,6 +11,7 @@ namespace appliance {
 struct Command {
   enum class Kind : std::uint8_t {
     kGoLive,        ///< newest moment, no delay; from every mode
+    kHome,          ///< the same, and the rig's middle view
     kFreezeToggle,  ///< stop at the shown moment; again: go on as before
     kDelayLess,     ///< one rung down the delay ladder
     kDelayMore,     ///< one rung up, at most to the history's end

@@ -37,7 +37,7 @@ rt::Nanoseconds rungBelow(Ladder ladder, rt::Nanoseconds delay, rt::Nanoseconds 
 /// Goes on to another moment, for which the view of the sweep's start is the one to see.
 bool leavesTheMoment(Command::Kind kind) {
   using enum Command::Kind;
-  return kind == kGoLive || kind == kDelayLess || kind == kDelayMore || kind == kSetDelay;
+  return kind == kGoLive || kind == kHome || kind == kDelayLess || kind == kDelayMore || kind == kSetDelay;
 }
 
 }  // namespace
@@ -88,6 +88,10 @@ void Director::apply(const Command& command, const Moment& at) RT_SAFE {
   switch (command.kind) {
     case kGoLive:
       changeDelay({});
+      break;
+    case kHome:
+      changeDelay({});
+      view_ = (at.cameras - 1) / 2;
       break;
     case kFreezeToggle:
       if (interrupted_sweep) break;

@@ -1,26 +1,29 @@
 #include "appliance/panel/panel_controller.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace appliance {
 namespace {
 
+enum class WhenHeld : std::uint8_t { kNothing, kRepeats, kGoesHome };
+
 struct Meaning {
   Command::Kind kind;
-  bool repeats;
+  WhenHeld held;
 };
 
 /// In the order of hal::Button.
 constexpr std::array<Meaning, hal::kButtonNames.size()> kMeanings = {{
-    {Command::Kind::kGoLive, false},
-    {Command::Kind::kFreezeToggle, false},
-    {Command::Kind::kDelayLess, true},
-    {Command::Kind::kDelayMore, true},
-    {Command::Kind::kStepBack, true},
-    {Command::Kind::kStepForward, true},
-    {Command::Kind::kViewLeft, true},
-    {Command::Kind::kViewRight, true},
-    {Command::Kind::kSweep, false},
+    {Command::Kind::kGoLive, WhenHeld::kGoesHome},
+    {Command::Kind::kFreezeToggle, WhenHeld::kNothing},
+    {Command::Kind::kDelayLess, WhenHeld::kRepeats},
+    {Command::Kind::kDelayMore, WhenHeld::kRepeats},
+    {Command::Kind::kStepBack, WhenHeld::kRepeats},
+    {Command::Kind::kStepForward, WhenHeld::kRepeats},
+    {Command::Kind::kViewLeft, WhenHeld::kRepeats},
+    {Command::Kind::kViewRight, WhenHeld::kRepeats},
+    {Command::Kind::kSweep, WhenHeld::kNothing},
 }};
 
 const Meaning& meaningOf(hal::Button button) {
@@ -30,17 +33,17 @@ const Meaning& meaningOf(hal::Button button) {
 }  // namespace
 
 std::optional<PanelCommand> PanelController::onEvent(const hal::ButtonEvent& event) {
-  bool& down = down_[static_cast<std::size_t>(event.button)];
-  if (event.pressed == down) return std::nullopt;
-  down = event.pressed;
+  if (event.pressed == down_[static_cast<std::size_t>(event.button)]) return std::nullopt;
   if (!event.pressed) {
-    if (repetition_ && repetition_->button == event.button) repetition_.reset();
+    letGo(event.button);
     return std::nullopt;
   }
+  down_[static_cast<std::size_t>(event.button)] = true;
   next_check_ = event.at + kRepeatEvery;
   const Meaning& meaning = meaningOf(event.button);
-  repetition_.reset();
-  if (meaning.repeats) repetition_ = Repetition{event.button, event.at + kRepeatAfter};
+  held_.reset();
+  if (meaning.held == WhenHeld::kRepeats) held_ = {event.button, event.at + kRepeatAfter};
+  if (meaning.held == WhenHeld::kGoesHome) held_ = {event.button, event.at + kLongPress};
   return PanelCommand{{.kind = meaning.kind}, event.at};
 }
 
@@ -48,21 +51,29 @@ std::optional<PanelCommand> PanelController::onTime(rt::Timestamp now) {
   if (!nextTime() || now < *nextTime()) return std::nullopt;
   for (std::size_t i = 0; i < down_.size(); ++i) {
     const auto button = static_cast<hal::Button>(i);
-    if (!down_[i] || level_(button)) continue;
-    down_[i] = false;
-    if (repetition_ && repetition_->button == button) repetition_.reset();
+    if (down_[i] && !level_(button)) letGo(button);
   }
   next_check_ = now + kRepeatEvery;
-  if (!repetition_ || now < repetition_->due) return std::nullopt;
-  const PanelCommand repeated{{.kind = meaningOf(repetition_->button).kind}, repetition_->due};
-  repetition_->due += kRepeatEvery;
-  if (repetition_->due <= now) repetition_->due = now + kRepeatEvery;
-  return repeated;
+  if (!held_ || now < held_->due) return std::nullopt;
+  const Meaning& meaning = meaningOf(held_->button);
+  const rt::Timestamp due = held_->due;
+  if (meaning.held == WhenHeld::kGoesHome) {
+    held_.reset();
+    return PanelCommand{{.kind = Command::Kind::kHome}, due};
+  }
+  held_->due += kRepeatEvery;
+  if (held_->due <= now) held_->due = now + kRepeatEvery;
+  return PanelCommand{{.kind = meaning.kind}, due};
+}
+
+void PanelController::letGo(hal::Button button) {
+  down_[static_cast<std::size_t>(button)] = false;
+  if (held_ && held_->button == button) held_.reset();
 }
 
 std::optional<rt::Timestamp> PanelController::nextTime() const {
   if (std::ranges::find(down_, true) == down_.end()) return std::nullopt;
-  return repetition_ ? std::min(repetition_->due, next_check_) : next_check_;
+  return held_ ? std::min(held_->due, next_check_) : next_check_;
 }
 
 }  // namespace appliance

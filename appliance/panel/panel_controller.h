@@ -14,13 +14,14 @@ namespace appliance {
 /// A command and the instant that caused it: button_to_commit is measured from there.
 struct PanelCommand {
   Command command;
-  rt::Timestamp cause;  ///< the contact's change, or when the repetition was due
+  rt::Timestamp cause;  ///< the contact's change, or when holding it was due
 };
 
 /// Turns the panel's contacts into commands: a pure state machine.
 ///
 /// A press acts at once, not its release. Step, delay and view keys repeat while held: after
-/// kRepeatAfter, then every kRepeatEvery; only the key pressed last repeats. Keys held
+/// kRepeatAfter, then every kRepeatEvery. `live` held for kLongPress goes home, once. Only the key
+/// pressed last repeats or goes home, and only while it stays down. Keys held
 /// together have no meaning of their own: each press acts alone, so that a stuck key blocks
 /// no other. A second press of a key that is down already is bounce and ignored. A release that
 /// got lost is found by reading the contacts of all keys that are down, kRepeatEvery and before
@@ -32,6 +33,7 @@ class PanelController {
  public:
   static constexpr rt::Nanoseconds kRepeatAfter = std::chrono::milliseconds(400);
   static constexpr rt::Nanoseconds kRepeatEvery = std::chrono::milliseconds(125);
+  static constexpr rt::Nanoseconds kLongPress = std::chrono::milliseconds(1500);
 
   /// Whether the contact is closed now: hal::ButtonPanel::isPressed().
   using Level = std::function<bool(hal::Button)>;
@@ -41,22 +43,25 @@ class PanelController {
   /// What a change of contact asks for, if anything.
   [[nodiscard]] std::optional<PanelCommand> onEvent(const hal::ButtonEvent& event);
 
-  /// The repetition that is due at @p now, if any; at most one per call, late ones are not
-  /// made up for.
+  /// What holding a key asks for at @p now, if anything; at most one command per call, late
+  /// repetitions are not made up for.
   [[nodiscard]] std::optional<PanelCommand> onTime(rt::Timestamp now);
 
   /// When onTime() is to be called next; nothing while no key is down.
   [[nodiscard]] std::optional<rt::Timestamp> nextTime() const;
 
  private:
-  struct Repetition {
+  /// What comes if the key pressed last stays down.
+  struct Held {
     hal::Button button;
     rt::Timestamp due;
   };
 
+  void letGo(hal::Button button);
+
   Level level_;
   std::array<bool, hal::kButtonNames.size()> down_{};
-  std::optional<Repetition> repetition_;
+  std::optional<Held> held_;
   rt::Timestamp next_check_;  // of the contacts, while a key is down
 };
 

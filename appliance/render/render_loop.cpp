@@ -66,6 +66,7 @@ void RenderLoop::turn() noexcept {
   recordFlips();
   counters_.shot = wanted.shot;
   status_.publish(counters_);
+  mode_.store(wanted.shot.mode, std::memory_order_relaxed);
 }
 
 void RenderLoop::takeCommands() noexcept {

@@ -64,7 +64,7 @@ struct RenderParameters {
 /// Shows the picture that the director decides on, whenever the shown camera has a new frame or
 /// somebody gave a command.
 ///
-/// Threads  run(): the `render` thread. status(): one reader.
+/// Threads  run(): the `render` thread. status(): one reader. mode(): any thread.
 /// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
 ///          monitored, not RT safe. It pins at most one frame at a time. It stands above receiving
 ///          and keeps to an allowance, so that capture has 40 % of every CPU.
@@ -80,6 +80,7 @@ class RenderLoop {
   [[nodiscard]] CommandQueue& controlCommands() { return control_commands_; }
 
   [[nodiscard]] RenderStatus status() { return status_.latest(); }
+  [[nodiscard]] Mode mode() const { return mode_.load(std::memory_order_relaxed); }
 
  private:
   struct Wanted {
@@ -118,6 +119,7 @@ class RenderLoop {
   rt::Timestamp second_begin_;  // of the second that is being counted
   std::uint32_t shown_in_second_ = 0;
   rt::LatestValue<RenderStatus> status_;
+  std::atomic<Mode> mode_{Mode::kLive};
 };
 
 }  // namespace appliance
