@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "appliance/capture/liveness.h"
-#include "appliance/panel/panel_controller.h"
+#include "appliance/trigger_wiring.h"
 #include "hal/backends.h"
 
 namespace appliance {
@@ -18,13 +18,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Producers of the trace: the two loops, then one per camera.
+// Producers of the trace: the loops, then one per camera.
 constexpr std::size_t kTriggerTrace = 0;
 constexpr std::size_t kRenderTrace = 1;
-constexpr std::size_t kFirstCameraTrace = 2;
+constexpr std::size_t kLoopbackTrace = 2;
+constexpr std::size_t kFirstCameraTrace = 3;
 
 constexpr std::uint32_t kFewestSets = 8;
-constexpr rt::Nanoseconds kPanelPoll = std::chrono::milliseconds(20);
 
 rt::Nanoseconds periodOf(double rate_hz) {
   return rt::Nanoseconds{std::llround(1e9 / rate_hz)};
@@ -34,10 +34,19 @@ rt::Nanoseconds microseconds(double us) {
   return rt::Nanoseconds{std::llround(us * 1e3)};
 }
 
+/// From the edge on the wire to the exposure, in every camera: the slowest opto-isolator's.
+double commonDelay_us(const Config::Cameras& config) {
+  return config.opto_delay_us.empty() ? 0 : std::ranges::max(config.opto_delay_us);
+}
+
+double triggerDelay_us(const Config::Cameras& config, std::size_t camera) {
+  return config.opto_delay_us.empty() ? 0 : commonDelay_us(config) - config.opto_delay_us[camera];
+}
+
 hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& camera,
-                             const std::string& address) {
+                             std::size_t index) {
   return {.name = camera.name,
-          .address = address,
+          .address = config.addresses[index],
           .width_px = camera.width_px,
           .height_px = camera.height_px,
           .pixel_format = config.pixel_format,
@@ -45,6 +54,7 @@ hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& cam
           .gain_db = config.gain_db,
           .white_balance_rgb = config.white_balance_rgb,
           .trigger_source = config.trigger_source,
+          .trigger_delay_us = triggerDelay_us(config, index),
           .packet_size_bytes = config.packet_size_bytes,
           .packet_delay_ns = config.packet_delay_ns,
           .socket_buffer_bytes = config.socket_buffer_bytes,
@@ -175,16 +185,15 @@ std::expected<void, std::string> Appliance::makeHistory() {
 }
 
 std::expected<void, std::string> Appliance::openDevices() {
-  auto line = hal::openTriggerLine(config_.trigger.backend,
-                                   static_cast<std::uint16_t>(config_.trigger.wire_port));
+  auto line = openTriggerLine(config_.trigger);
   if (!line) return std::unexpected(line.error());
   trigger_line_ = std::move(*line);
-
-  if (config_.panel.backend != "none") {
-    auto panel = hal::openButtonPanel(config_.panel.backend, config_.panel.script);
-    if (!panel) return std::unexpected(panel.error());
-    panel_ = std::move(*panel);
+  if (!config_.trigger.loopback_line.empty()) {
+    auto loopback = openLoopback(config_.trigger, *trigger_line_);
+    if (!loopback) degraded_.push_back(loopback.error() + "; the edges are not measured");
+    if (loopback) loopback_ = std::move(*loopback);
   }
+  openPanel();
   openCameras();
   if (std::ranges::none_of(cameras_, [](const auto& camera) { return camera != nullptr; })) {
     return std::unexpected("no camera opened: " + degraded_.back());
@@ -192,11 +201,27 @@ std::expected<void, std::string> Appliance::openDevices() {
   return {};
 }
 
+void Appliance::openPanel() {
+  const Config::Panel& config = config_.panel;
+  if (config.backend == "none") return;
+  auto panel = hal::openButtonPanel(config.backend,
+                                    {.script = config.script,
+                                     .button_prefix = config.button_prefix,
+                                     .lamp_prefix = config.lamp_prefix,
+                                     .active_low = config.active_low,
+                                     .debounce = std::chrono::milliseconds(config.debounce_ms)},
+                                    degraded_);
+  if (!panel) {
+    degraded_.push_back(panel.error() + "; the box runs without its panel");
+    return;
+  }
+  panel_ = std::move(*panel);
+}
+
 void Appliance::openCameras() {
   for (std::size_t i = 0; i < rig_.cameras.size(); ++i) {
     auto camera =
-        hal::openCamera(config_.cameras.backend,
-                        profileOf(config_.cameras, rig_.cameras[i], config_.cameras.addresses[i]),
+        hal::openCamera(config_.cameras.backend, profileOf(config_.cameras, rig_.cameras[i], i),
                         threadConfig(receiveThreadName(i), config_.realtime.receive));
     if (!camera) degraded_.push_back(camera.error());
     cameras_.push_back(camera ? std::move(*camera) : nullptr);
@@ -216,7 +241,8 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
   const auto producer = [&](std::size_t index) {
     return trace_ ? &trace_->producer(index) : nullptr;
   };
-  const rt::Nanoseconds camera_delay = microseconds(config_.cameras.exposure_us);
+  const rt::Nanoseconds camera_delay =
+      microseconds(commonDelay_us(config_.cameras) + config_.cameras.exposure_us);
   for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
     collectors_.push_back(std::make_unique<Collector>(i, Association{period_, camera_delay},
                                                       history_->camera(i), board_,
@@ -225,6 +251,10 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
   trigger_loop_ = std::make_unique<TriggerLoop>(
       TriggerTiming{.period = period_, .pulse_width = microseconds(config_.trigger.pulse_width_us)},
       *trigger_line_, board_.edges, producer(kTriggerTrace));
+  if (loopback_ && trace_) {
+    loopback_loop_ = std::make_unique<LoopbackLoop>(period_, *loopback_, board_.edges,
+                                                    trace_->producer(kLoopbackTrace));
+  }
   render_loop_ = std::make_unique<RenderLoop>(
       RenderParts{.rig = rig_,
                   .history = *history_,
@@ -245,8 +275,15 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
   auto started = startThread(render_thread_, "render", realtime.render,
                              [this](auto stop) { render_loop_->run(stop); });
   if (started && panel_) {
-    started =
-        startThread(panel_thread_, "panel", realtime.panel, [this](auto stop) { runPanel(stop); });
+    panel_loop_ = std::make_unique<PanelLoop>(
+        *panel_,
+        [this](const PanelCommand& given) {
+          (void)render_loop_->panelCommands().tryPush({given.command, given.cause});
+          board_.frame_ready.ring();
+        },
+        [this] { return render_loop_->mode(); });
+    started = startThread(panel_thread_, "panel", realtime.panel,
+                          [this](auto stop) { panel_loop_->run(stop); });
   }
   for (std::uint32_t i = 0; started && i < history_->cameras(); ++i) {
     if (!cameras_[i]) continue;
@@ -256,6 +293,10 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
       degraded_.push_back(streaming.error());
       cameras_[i].reset();
     }
+  }
+  if (started && loopback_loop_) {
+    started = startThread(loopback_thread_, "loopback", {},
+                          [this](auto stop) { loopback_loop_->run(stop); });
   }
   // Cameras wait for their trigger now; the first edge is the last thing to come.
   if (started) {
@@ -289,24 +330,6 @@ std::expected<void, std::string> Appliance::startThread(rt::Thread& thread, cons
   return {};
 }
 
-void Appliance::runPanel(const std::stop_token& stop) {
-  PanelController controller([this](hal::Button button) { return panel_->isPressed(button); });
-  const auto give = [this](const std::optional<PanelCommand>& given) {
-    if (!given) return;
-    (void)render_loop_->panelCommands().tryPush({given->command, given->cause});
-    board_.frame_ready.ring();
-  };
-  while (!stop.stop_requested()) {
-    const rt::Timestamp now = rt::now();
-    const rt::Timestamp wake =
-        std::min(controller.nextTime().value_or(now + kPanelPoll), now + kPanelPoll);
-    if (const auto event = panel_->waitEvent(std::max(wake - now, rt::Nanoseconds{0}))) {
-      give(controller.onEvent(*event));
-    }
-    give(controller.onTime(rt::now()));
-  }
-}
-
 Appliance::~Appliance() {
   stopPipeline();
 }
@@ -320,6 +343,7 @@ void Appliance::stopPipeline() {
   for (const auto& camera : cameras_) {
     if (camera) camera->stop();
   }
+  loopback_thread_ = {};
   panel_thread_ = {};
   if (render_thread_.joinable()) {
     render_thread_.requestStop();
@@ -360,6 +384,9 @@ Status Appliance::status() const {
                 .triggers = board_.edges.newest(),
                 .degraded = degraded_,
                 .renderer = renderer_};
+  if (panel_loop_ && panel_loop_->lost()) {
+    status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");
+  }
   for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
     const CollectorCounts counts = collectors_[i]->counts();
     status.cameras.push_back({.name = rig_.cameras[i].name,

@@ -11,16 +11,19 @@
 
 #include "appliance/capture/collector.h"
 #include "appliance/capture/frame_history.h"
+#include "appliance/capture/loopback.h"
 #include "appliance/capture/trigger_loop.h"
 #include "appliance/config/config.h"
 #include "appliance/control/status.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
+#include "appliance/panel/panel_loop.h"
 #include "appliance/render/render_loop.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/button_panel.h"
 #include "hal/camera.h"
 #include "hal/display.h"
+#include "hal/edge_input.h"
 #include "hal/trigger_line.h"
 #include "rt/thread.h"
 
@@ -58,6 +61,7 @@ class Appliance final : public ControlSink, public StatusSource {
 
   [[nodiscard]] std::expected<void, std::string> makeHistory();
   [[nodiscard]] std::expected<void, std::string> openDevices();
+  void openPanel();
   void openCameras();
   [[nodiscard]] std::expected<void, std::string> openTrace();
   void makeLoops(hal::Display& display, PictureObserver* observer);
@@ -66,7 +70,6 @@ class Appliance final : public ControlSink, public StatusSource {
                                                              const Config::ThreadSchedule& how,
                                                              std::function<void(std::stop_token)>);
   [[nodiscard]] CameraState cameraState(std::uint32_t camera) const;
-  void runPanel(const std::stop_token& stop);
   void stopPipeline();
   [[nodiscard]] RunRecord runRecord(const hal::Display& display) const;
   [[nodiscard]] SummaryRecord summary() const;
@@ -82,13 +85,17 @@ class Appliance final : public ControlSink, public StatusSource {
   CaptureBoard board_;
   std::unique_ptr<FrameHistory> history_;
   std::unique_ptr<hal::TriggerLine> trigger_line_;
+  std::unique_ptr<hal::EdgeInput> loopback_;  // none: no loop-back, or wired wrongly
   std::unique_ptr<hal::ButtonPanel> panel_;
   std::unique_ptr<TraceWriter> trace_;  // none: not traced
   std::vector<std::unique_ptr<Collector>> collectors_;
   std::vector<std::unique_ptr<hal::Camera>> cameras_;  // null where it did not open
   std::unique_ptr<TriggerLoop> trigger_loop_;
+  std::unique_ptr<LoopbackLoop> loopback_loop_;
   std::unique_ptr<RenderLoop> render_loop_;
+  std::unique_ptr<PanelLoop> panel_loop_;
 
+  rt::Thread loopback_thread_;
   rt::Thread panel_thread_;
   rt::Thread render_thread_;
   rt::Thread trigger_thread_;

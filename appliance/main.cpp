@@ -20,6 +20,7 @@
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
 #include "appliance/stop_signals.h"
+#include "appliance/trigger_wiring.h"
 #include "rt/clock.h"
 #include "ui-kms/draw_workers.h"
 #include "ui-kms/offscreen_display.h"
@@ -33,6 +34,7 @@ struct Options {
   std::vector<std::string> overrides;
   std::vector<double> target_m;  // empty: the rig's
   bool check_config = false;
+  bool release_lines = false;
 };
 
 struct Site {
@@ -104,6 +106,15 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
   sd_notify(0, "STOPPING=1");
 }
 
+/// What a killed daemon could not do: the kernel lets its lines go at whatever level they had.
+std::expected<void, std::string> releaseLines(const Options& options) {
+  const auto config = loadConfig(options.config_file, options.overrides);
+  if (!config) return std::unexpected(config.error());
+  if (const auto line = openTriggerLine(config->trigger); !line)
+    return std::unexpected(line.error());
+  return {};
+}
+
 /// Errors   One line; nothing is left running.
 std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
   const Config& config = site.config;
@@ -148,9 +159,16 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->expected(3);
   app.add_flag("--check-config", options.check_config, "Check configuration and rig, then end");
+  app.add_flag("--release-lines", options.release_lines,
+               "Drive the trigger lines inactive, then end: for after a crash");
   app.set_version_flag("--version", KAGAMI_VERSION);
   CLI11_PARSE(app, argc, argv);
 
+  if (options.release_lines) {
+    const auto released = releaseLines(options);
+    if (!released) logError(released.error());
+    return released ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
   StopSignals stop;  // before any thread
   const auto site = loadSite(options);
   if (!site) {

@@ -16,6 +16,12 @@ std::expected<void, std::string> checkTogether(const Config& config, const Rig& 
                            config.rig.file + " describes " + std::to_string(rig.cameras.size()) +
                            ": give one address per [[camera]], in the same order");
   }
+  const std::size_t opto_delays = config.cameras.opto_delay_us.size();
+  if (opto_delays != 0 && opto_delays != rig.cameras.size()) {
+    return std::unexpected("cameras.opto_delay_us lists " + std::to_string(opto_delays) +
+                           " delays for " + std::to_string(rig.cameras.size()) +
+                           " cameras: give one per camera, or []");
+  }
   if (!rig.target_m.allFinite()) {
     return std::unexpected("--target: three finite numbers are needed, in metres: 0,0,1");
   }

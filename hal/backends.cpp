@@ -1,9 +1,14 @@
 #include "hal/backends.h"
 
+#include <utility>
+
 #include "hal/aravis/aravis_camera.h"
 #include "hal/emulated/scripted_panel.h"
 #include "hal/emulated/terminal_panel.h"
 #include "hal/emulated/trigger_line.h"
+#include "hal/gpiod/edge_input.h"
+#include "hal/gpiod/panel.h"
+#include "hal/gpiod/trigger_line.h"
 
 namespace hal {
 namespace {
@@ -27,19 +32,36 @@ Opened<Camera> openCamera(std::string_view backend, const CameraProfile& profile
   return std::unexpected(unknown("cameras", backend, "\"aravis\""));
 }
 
-Opened<TriggerLine> openTriggerLine(std::string_view backend, std::uint16_t wire_port) {
-  if (backend == "emulated") return as<TriggerLine>(emulated::EmulatedTriggerLine::open(wire_port));
-  return std::unexpected(unknown("trigger", backend, "\"emulated\""));
+Opened<TriggerLine> openTriggerLine(std::string_view backend, const TriggerLineSettings& settings) {
+  if (backend == "emulated")
+    return as<TriggerLine>(emulated::EmulatedTriggerLine::open(settings.wire_port));
+  if (backend == "gpiod")
+    return gpiod::openTriggerLine({.lines = settings.lines, .active_low = settings.active_low});
+  return std::unexpected(unknown("trigger", backend, R"("emulated", "gpiod")"));
 }
 
-Opened<ButtonPanel> openButtonPanel(std::string_view backend, const std::string& script) {
+Opened<EdgeInput> openEdgeInput(const std::string& line, bool active_low) {
+  return gpiod::openEdgeInput({.line = line, .active_low = active_low});
+}
+
+Opened<ButtonPanel> openButtonPanel(std::string_view backend, const PanelSettings& settings,
+                                    std::vector<std::string>& notes) {
   if (backend == "terminal") return emulated::TerminalPanel::open();
   if (backend == "scripted") {
-    auto panel = emulated::ScriptedPanel::open(script, rt::now());
+    auto panel = emulated::ScriptedPanel::open(settings.script, rt::now());
     if (!panel) return std::unexpected(std::move(panel.error()));
     return std::make_unique<emulated::ScriptedPanel>(std::move(*panel));
   }
-  return std::unexpected(unknown("panel", backend, "\"none\", \"scripted\", \"terminal\""));
+  if (backend == "gpiod") {
+    auto opened = gpiod::openButtonPanel({.button_prefix = settings.button_prefix,
+                                          .lamp_prefix = settings.lamp_prefix,
+                                          .active_low = settings.active_low,
+                                          .debounce = settings.debounce});
+    if (!opened) return std::unexpected(std::move(opened.error()));
+    for (std::string& note : opened->notes) notes.push_back(std::move(note));
+    return std::move(opened->panel);
+  }
+  return std::unexpected(unknown("panel", backend, R"("none", "scripted", "terminal", "gpiod")"));
 }
 
 }  // namespace hal

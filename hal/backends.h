@@ -1,14 +1,17 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <expected>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/button_panel.h"
 #include "hal/camera.h"
 #include "hal/camera_profile.h"
+#include "hal/edge_input.h"
 #include "hal/trigger_line.h"
 #include "rt/thread.h"
 
@@ -25,12 +28,31 @@ using Opened = std::expected<std::unique_ptr<Device>, std::string>;
 [[nodiscard]] Opened<Camera> openCamera(std::string_view backend, const CameraProfile& profile,
                                         const rt::ThreadConfig& receive);
 
-/// backend "emulated": @p wire_port is the emulator's trigger wire on this machine.
-[[nodiscard]] Opened<TriggerLine> openTriggerLine(std::string_view backend,
-                                                  std::uint16_t wire_port);
+struct TriggerLineSettings {
+  std::uint16_t wire_port = 0;     ///< "emulated": the emulator's trigger wire on this machine
+  std::vector<std::string> lines;  ///< "gpiod": names of GPIO lines, which fire together
+  bool active_low = false;         ///< "gpiod"
+};
 
-/// backend "scripted": @p script is its file; "terminal": keys of this terminal.
+/// backend "emulated" or "gpiod".
+[[nodiscard]] Opened<TriggerLine> openTriggerLine(std::string_view backend,
+                                                  const TriggerLineSettings& settings);
+
+/// A GPIO line by its name, whatever the trigger line's backend.
+[[nodiscard]] Opened<EdgeInput> openEdgeInput(const std::string& line, bool active_low);
+
+struct PanelSettings {
+  std::string script;         ///< "scripted": its file
+  std::string button_prefix;  ///< "gpiod": of the names of the buttons' lines
+  std::string lamp_prefix;
+  bool active_low = true;
+  std::chrono::milliseconds debounce{};
+};
+
+/// backend "scripted", "terminal" (keys of this terminal) or "gpiod". What opens with less than it
+/// could have adds a line for a person to @p notes.
 [[nodiscard]] Opened<ButtonPanel> openButtonPanel(std::string_view backend,
-                                                  const std::string& script);
+                                                  const PanelSettings& settings,
+                                                  std::vector<std::string>& notes);
 
 }  // namespace hal

@@ -27,6 +27,7 @@ struct CameraProfile {
   double gain_db = 0;
   std::array<double, 3> white_balance_rgb{1, 1, 1};  ///< in the camera; equal for all of a rig
   std::string trigger_source = "Line1";              ///< or kFreeRunning
+  double trigger_delay_us = 0;  ///< from the edge at the camera to its exposure
 
   std::uint32_t packet_size_bytes = 9000;  ///< IP datagram; explicit, never negotiated
   std::uint32_t packet_delay_ns = 0;       ///< between two packets, beyond the link's own pace

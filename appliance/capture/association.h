@@ -18,7 +18,7 @@ namespace appliance {
 class Association {
  public:
   /// @p period: between triggers. @p camera_delay: from the edge to the leader's arrival on an
-  /// idle wire (trigger delay, exposure, read-out start).
+  /// idle wire (opto-isolator, trigger delay, exposure, read-out start).
   Association(rt::Nanoseconds period, rt::Nanoseconds camera_delay)
       : period_(period), camera_delay_(camera_delay) {}
 

@@ -103,6 +103,7 @@ void readCameras(Section section, Config::Cameras& cameras) {
                   {64 * 1024, 256 * 1024 * 1024, "bytes"});
   section.integer("packet_timeout_us", cameras.packet_timeout_us, {100, 1'000'000, "us"});
   section.integer("frame_retention_us", cameras.frame_retention_us, {1000, 1'000'000, "us"});
+  section.numbers("opto_delay_us", cameras.opto_delay_us, {0, 1000, "us"});
   section.end();
 
   std::set<std::string> seen;
@@ -119,6 +120,10 @@ void readTrigger(Section section, Config::Trigger& trigger) {
   section.number("rate_hz", trigger.rate_hz, {0.1, 1000, "Hz"});
   section.number("pulse_width_us", trigger.pulse_width_us, {1, 1e6, "us"});
   section.integer("wire_port", trigger.wire_port, {1, 65535});
+  section.texts("lines", trigger.lines);
+  section.flag("active_low", trigger.active_low);
+  section.text("loopback_line", trigger.loopback_line);
+  section.flag("loopback_active_low", trigger.loopback_active_low);
   section.end();
 }
 
@@ -139,6 +144,18 @@ void readDisplay(Section section, Config::Display& display) {
   section.integer("render_threads", display.render_threads, {1, 64, "threads"});
   section.word("font", display.font);
   section.end();
+}
+
+void readPanel(Section section, Config::Panel& panel) {
+  section.word("backend", panel.backend);
+  section.text("script", panel.script);
+  section.text("button_prefix", panel.button_prefix);
+  section.text("lamp_prefix", panel.lamp_prefix);
+  section.flag("active_low", panel.active_low);
+  section.integer("debounce_ms", panel.debounce_ms, {1, 100, "ms"});
+  section.end();
+  if (panel.button_prefix == panel.lamp_prefix)
+    section.fail("lamp_prefix", "lamp_prefix must differ from button_prefix");
 }
 
 void readDirector(Section section, Config::Director& director) {
@@ -210,10 +227,7 @@ std::vector<std::string> readAll(const TomlTable& root, Config& config) {
   readTrigger(sections.sub("trigger"), config.trigger);
   readHistory(sections.sub("history"), config.history);
   readDisplay(sections.sub("display"), config.display);
-  Section panel = sections.sub("panel");
-  panel.word("backend", config.panel.backend);
-  panel.text("script", config.panel.script);
-  panel.end();
+  readPanel(sections.sub("panel"), config.panel);
   readDirector(sections.sub("director"), config.director);
   readRecord(sections.sub("record"), config.record);
   readRealtime(sections.sub("realtime"), config.realtime);

@@ -33,6 +33,7 @@ struct Config {
     std::uint32_t socket_buffer_bytes = 4U << 20;
     std::uint32_t packet_timeout_us = 5000;
     std::uint32_t frame_retention_us = 30000;
+    std::vector<double> opto_delay_us;  ///< one per camera; empty: all the same
     bool operator==(const Cameras&) const = default;
   };
 
@@ -41,6 +42,10 @@ struct Config {
     double rate_hz = 40;
     double pulse_width_us = 100;
     std::uint32_t wire_port = 3990;  ///< of the emulator, on this machine
+    std::vector<std::string> lines;  ///< GPIO lines by name
+    bool active_low = false;
+    std::string loopback_line;  ///< empty: the trigger's edges are not measured
+    bool loopback_active_low = false;
     bool operator==(const Trigger&) const = default;
   };
 
@@ -66,6 +71,10 @@ struct Config {
   struct Panel {
     std::string backend = "none";
     std::string script;
+    std::string button_prefix = "button-";
+    std::string lamp_prefix = "lamp-";
+    bool active_low = true;
+    std::uint32_t debounce_ms = 10;
     bool operator==(const Panel&) const = default;
   };
 

@@ -162,7 +162,8 @@ double distinctSetsPerSecond(const std::vector<const PictureRecord*>& shown) {
 /// All values that the pictures and frames give, before they become distributions.
 struct Values {
   std::vector<double> edge_to_ready, last_packet_to_commit, target_point, homographies,
-      demosaic_upload, warp, commit_to_flip, edge_to_flip, button_to_commit, lateness_us;
+      demosaic_upload, warp, commit_to_flip, edge_to_flip, button_to_commit, lateness_us,
+      edge_delay_us;
   std::array<std::vector<double>, 4> wake_to_commit, edge_to_commit;
 };
 
@@ -292,11 +293,15 @@ Report computeReport(const ReportInput& input) {
   Values values;
   for (const TriggerRecord& trigger : trace.triggers)
     values.lateness_us.push_back(us(trigger.deadline, trigger.trigger_edge_after));
+  for (const LoopbackRecord& loopback : trace.loopbacks)
+    if (const rt::Timestamp edge = index.triggerEdge(loopback.trigger); happened(edge))
+      values.edge_delay_us.push_back(us(edge, loopback.edge));
   for (const auto& [key, frame] : index.complete)
     append(values.edge_to_ready, index.triggerEdge(frame->trigger), frame->frame_ready);
   addPictures(shown, index, wire ? &*wire : nullptr, values);
 
   report.trigger_lateness_us = distributionOf(std::move(values.lateness_us));
+  report.trigger_edge_delay_us = distributionOf(std::move(values.edge_delay_us));
   report.button_to_commit_ms = distributionOf(std::move(values.button_to_commit));
   report.stages_ms = {
       .trigger_edge_to_frame_ready = distributionOf(std::move(values.edge_to_ready)),

@@ -66,6 +66,7 @@ struct Report {
   std::uint64_t pictures_repeated = 0;  ///< live or delayed, same frame as the one before
   double shown_fps = 0;  ///< distinct frame sets a second in the live and delayed phases
   Distribution trigger_lateness_us;
+  Distribution trigger_edge_delay_us;  ///< to the loop-back; without one there is none
   Distribution button_to_commit_ms;
   StageTimes stages_ms;
   std::array<ModeTimes, 4> by_mode;  ///< in the order of Mode

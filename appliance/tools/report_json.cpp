@@ -98,6 +98,7 @@ std::string toJson(const Report& report) {
                    {"pictures", report.pictures},
                    {"pictures_repeated", report.pictures_repeated},
                    {"trigger_lateness_us", toObject(report.trigger_lateness_us)},
+                   {"trigger_edge_delay_us", toObject(report.trigger_edge_delay_us)},
                    {"button_to_commit_ms", toObject(report.button_to_commit_ms)},
                    {"stages_ms", toObject(report.stages_ms)},
                    {"last_packet_from", report.last_packet_from_wire_log ? "wire log" : "trace"},

@@ -73,6 +73,7 @@ std::string stages(const Report& report) {
   text += row("trigger_edge_to_page_flip", t.trigger_edge_to_page_flip, "visible delay about 120");
   text += row("button_to_commit", report.button_to_commit_ms, "");
   text += row("trigger lateness, us", report.trigger_lateness_us, "");
+  text += row("trigger edge delay, us", report.trigger_edge_delay_us, "");
   return text;
 }
 

@@ -20,6 +20,12 @@ void visitFields(R& record, Visitor&& visit) {
   visit("trigger_edge_after_ns", record.trigger_edge_after);
 }
 
+template <IsRecord<LoopbackRecord> R, class Visitor>
+void visitFields(R& record, Visitor&& visit) {
+  visit("trigger", record.trigger);
+  visit("edge_ns", record.edge);
+}
+
 template <IsRecord<FrameRecord> R, class Visitor>
 void visitFields(R& record, Visitor&& visit) {
   visit("camera", record.camera);

@@ -23,6 +23,12 @@ struct TriggerRecord {
   rt::Timestamp trigger_edge_after;
 };
 
+/// An edge of the trigger line as the loop-back input saw it, by the loop-back thread.
+struct LoopbackRecord {
+  std::uint64_t trigger = 0;  ///< 0: no trigger edge was near enough
+  rt::Timestamp edge;         ///< as the kernel stamped it
+};
+
 /// One frame that a camera delivered, whole or not, by that camera's receive thread.
 struct FrameRecord {
   std::uint32_t camera = 0;
@@ -68,7 +74,8 @@ struct FlipRecord {
 };
 
 /// What crosses from a real-time thread to the trace writer.
-using TraceRecord = std::variant<TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord>;
+using TraceRecord =
+    std::variant<TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord, LoopbackRecord>;
 static_assert(std::is_trivially_copyable_v<TraceRecord>, "records cross threads by copy");
 
 /// What a named thread asked for and what the kernel granted.

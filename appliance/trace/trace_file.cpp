@@ -34,6 +34,8 @@ template <>
 constexpr const char* kKind<PictureRecord> = "picture";
 template <>
 constexpr const char* kKind<FlipRecord> = "flip";
+template <>
+constexpr const char* kKind<LoopbackRecord> = "loopback";
 
 /// Appends the fields of the frequent records; they hold no text of the world, so nothing is
 /// escaped.
@@ -193,6 +195,7 @@ std::string takeLine(const std::string& line, bool first, Trace& trace) {
   if (kind == kKind<SetRecord>) return readInto(object, trace.sets.emplace_back());
   if (kind == kKind<PictureRecord>) return readInto(object, trace.pictures.emplace_back());
   if (kind == kKind<FlipRecord>) return readInto(object, trace.flips.emplace_back());
+  if (kind == kKind<LoopbackRecord>) return readInto(object, trace.loopbacks.emplace_back());
   if (kind == "summary") return readInto(object, trace.summary.emplace());
   return "unknown record '" + kind + "'";
 }

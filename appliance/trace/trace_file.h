@@ -23,6 +23,7 @@ struct Trace {
   std::vector<SetRecord> sets;
   std::vector<PictureRecord> pictures;
   std::vector<FlipRecord> flips;
+  std::vector<LoopbackRecord> loopbacks;
   std::optional<SummaryRecord> summary;  ///< nothing: the daemon did not come to its end
 };
 

@@ -36,6 +36,8 @@ std::vector<FeatureSetting> featureSettings(const CameraProfile& profile) {
   } else {
     settings.push_back({"TriggerSource", profile.trigger_source});
     settings.push_back({"TriggerActivation", "RisingEdge"s});
+    settings.push_back({"TriggerDelay", profile.trigger_delay_us, profile.trigger_delay_us == 0,
+                        "TriggerDelayAbs"});
     settings.push_back({"TriggerMode", "On"s});
   }
   return settings;

@@ -78,10 +78,10 @@ std::expected<void, std::string> pushProfile(ArvCamera* camera, const CameraProf
                            ": check the camera's model and its [cameras] settings");
   };
   for (const FeatureSetting& setting : featureSettings(profile)) {
-    const bool standard = has(device, setting.name);
-    if (setting.optional && !standard) continue;
-    const std::string& name =
-        standard || setting.older_name.empty() ? setting.name : setting.older_name;
+    const bool older = !has(device, setting.name) && !setting.older_name.empty() &&
+                       has(device, setting.older_name);
+    const std::string& name = older ? setting.older_name : setting.name;
+    if (setting.optional && !older && !has(device, name)) continue;
     const Outcome wrong =
         std::visit([&](const auto& wanted) { return set(device, name, wanted); }, setting.value);
     if (wrong) return fail(*wrong);

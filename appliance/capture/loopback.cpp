@@ -1,0 +1,77 @@
+#include "appliance/capture/loopback.h"
+
+#include <chrono>
+#include <thread>
+
+namespace appliance {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// An edge that takes longer than this, opto-isolators included, does not come.
+constexpr rt::Nanoseconds kLongestEdge = 20ms;
+
+constexpr rt::Nanoseconds kStopPoll = 100ms;
+
+/// The kernel may show an edge before the trigger loop has posted it.
+constexpr int kLooksForTrigger = 5;
+constexpr rt::Nanoseconds kBetweenLooks = 1ms;
+
+const std::string kPolarity =
+    "trigger: polarity wrong: the loop-back reads active while the line is inactive: change "
+    "trigger.active_low, or trigger.loopback_active_low if only the loop-back is inverted";
+
+std::string noEdge(const char* what) {
+  return std::string("trigger: no edge came back: ") + what +
+         ": check the wire from the trigger line to trigger.loopback_line";
+}
+
+}  // namespace
+
+std::expected<void, std::string> judgeLoopback(const LoopbackReading& reading) {
+  if (reading.before && !reading.during && reading.after) return std::unexpected(kPolarity);
+  if (reading.before == reading.during)
+    return std::unexpected(
+        noEdge(reading.before ? "the loop-back stays active" : "the loop-back stays inactive"));
+  if (reading.after != reading.before)
+    return std::unexpected(noEdge("the loop-back changed once and stayed so"));
+  if (!reading.edge)
+    return std::unexpected(noEdge("the loop-back's level follows, but its chip stamps no edges"));
+  return {};
+}
+
+std::expected<void, std::string> checkLoopback(hal::TriggerLine& line, hal::EdgeInput& input) {
+  const auto unreadable = [] {
+    return std::unexpected(
+        std::string("trigger: the loop-back cannot be checked: its line or the trigger's is gone"));
+  };
+  while (input.waitEdge(0ns)) {
+  }
+  const auto before = input.isActive();
+  if (!before || !line.setActive(true)) return unreadable();
+  const bool edge = input.waitEdge(kLongestEdge).has_value();
+  const auto during = input.isActive();
+  if (!line.setActive(false)) return unreadable();
+  (void)input.waitEdge(kLongestEdge);
+  const auto after = input.isActive();
+  if (!during || !after) return unreadable();
+  return judgeLoopback({.before = *before, .during = *during, .after = *after, .edge = edge});
+}
+
+void LoopbackLoop::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const auto edge = input_.waitEdge(kStopPoll);
+    if (!edge || !edge->active) continue;
+    trace_.record(LoopbackRecord{.trigger = triggerOf(edge->at), .edge = edge->at});
+  }
+}
+
+std::uint64_t LoopbackLoop::triggerOf(rt::Timestamp edge) const {
+  for (int look = 0; look < kLooksForTrigger; ++look) {
+    if (const auto trigger = association_.triggerOf(edge, edges_)) return *trigger;
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+  return 0;
+}
+
+}  // namespace appliance
