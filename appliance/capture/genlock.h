@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "hal/display_timing.h"
+#include "rt/annotations.h"
+#include "rt/clock.h"
+
+namespace appliance {
+
+/// What the render thread knows and the trigger loop needs.
+struct GenlockInput {
+  std::optional<hal::DisplayTiming> timing;
+  rt::Nanoseconds ready_delay{};  ///< trigger_edge to frame_ready, nearly always; zero: not known
+};
+
+enum class GenlockState : std::uint8_t {
+  kOff,          ///< not asked for
+  kFreeRunning,  ///< triggers at the configured rate, whatever the screen does
+  kAcquiring,    ///< the phase is being moved
+  kLocked,       ///< every trigger a whole number of vblanks after the one before, in phase
+};
+
+/// Why it is not locked, or no longer.
+enum class GenlockReason : std::uint8_t {
+  kNone,
+  kNoVblanks,  ///< not known yet, or none seen for Genlock::kHoldOver
+  kRatio,      ///< the refresh rate is no whole multiple of the trigger rate
+  kNoFrames,   ///< too few frames were shown to know how long they take
+  kPhaseLost,  ///< the vblanks are not where they were expected
+};
+
+struct GenlockStatus {
+  GenlockState state = GenlockState::kOff;
+  GenlockReason reason = GenlockReason::kNone;
+  bool hold_over = false;                 ///< by prediction alone: no vblank seen for a while
+  std::uint32_t vblanks_per_trigger = 0;  ///< 0: no lock is possible
+  rt::Nanoseconds phase_error{};          ///< of the next trigger before it is corrected
+  double phase_error_rms_ns = 0;          ///< since locked, the last 64 triggers or so
+  rt::Nanoseconds lead{};                 ///< from trigger to the vblank it is meant for
+  double vblank_period_ns = 0;            ///< 0: not known
+  std::uint64_t unlocks = 0;
+  GenlockReason last_unlock = GenlockReason::kNone;
+};
+
+/// Moves the triggers so that every frame is ready just in time for the same vblank.
+///
+/// A picture comes on screen with vblank v if its warp begins by latestStart(v). Its frame is
+/// ready a `ready_delay` after the trigger, so the trigger belongs at
+///
+///     vblankAt(v) - lead,   lead = ready_delay + margin + draw + commit_margin
+///
+/// and the next one n vblanks later, n = round(period / vblank period). Deadlines are moved by at
+/// most kMostSlew of a period per trigger, plus what the two rates differ (kMostMistuned at most):
+/// cameras need that much headroom. Lead follows its parts slowly and not at once, so that a lock
+/// is never lost to them. Mains frequency has no say: exposure and gain handle lamps.
+///
+/// Threads  One: the trigger loop's. Pure: time is an argument.
+/// RT       RT safe.
+class Genlock {
+ public:
+  struct Parameters {
+    bool enabled = true;
+    rt::Nanoseconds period;  ///< as configured
+    rt::Nanoseconds margin;  ///< frame_ready to the latest start of its warp
+  };
+
+  static constexpr double kMostMistuned = 0.005;  ///< refresh / rate from a whole number, relative
+  static constexpr double kMostSlew = 0.01;       ///< of a period, per trigger
+  static constexpr rt::Nanoseconds kHoldOver = std::chrono::seconds(60);
+
+  explicit Genlock(const Parameters& parameters);
+
+  /// The newest input; without timing the last one is held over.
+  void take(const GenlockInput& input) RT_SAFE;
+
+  /// How far the coming deadline, one configured period after the last, is to be moved.
+  /// Once per trigger.
+  [[nodiscard]] rt::Nanoseconds step(rt::Timestamp deadline) RT_SAFE;
+
+  [[nodiscard]] const GenlockStatus& status() const RT_SAFE { return status_; }
+
+ private:
+  [[nodiscard]] GenlockReason obstacle(rt::Timestamp deadline) const RT_SAFE;
+  [[nodiscard]] rt::Nanoseconds moveLead() RT_SAFE;
+  void judge(rt::Nanoseconds error) RT_SAFE;
+  void leave(GenlockState to, GenlockReason reason) RT_SAFE;
+
+  const Parameters parameters_;
+  GenlockInput input_;
+  GenlockStatus status_;
+  bool lead_moving_ = false;
+  std::uint32_t good_in_a_row_ = 0;
+  std::uint32_t locked_for_ = 0;  // triggers
+};
+
+}  // namespace appliance
