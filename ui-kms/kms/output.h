@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <string>
+#include <vector>
+
+#include <xf86drmMode.h>
+
+#include "ui-kms/kms/atomic_request.h"
+#include "ui-kms/kms/connector.h"
+#include "ui-kms/kms/properties.h"
+
+namespace ui::kms {
+
+/// The way of a picture inside the card: the primary plane fetches it from memory, the CRTC times
+/// it, the connector sends it to the screen. Only the connector is given by where the cable is; the
+/// other two are chosen here.
+///
+/// Threads  One. The device's descriptor outlives it.
+class Output {
+ public:
+  /// Errors   One line: no free CRTC, or none with a plane.
+  [[nodiscard]] static std::expected<Output, std::string> find(int fd, Connector connector);
+
+  [[nodiscard]] const Connector& connector() const { return connector_; }
+
+  /// Sets @p mode and shows @p framebuffer, which has that mode's size; flips with @p serial.
+  /// Tested first. What is only desirable (content type, colour range, underscan) is left out where
+  /// the driver refuses the whole with it. Undoes what another program left behind.
+  [[nodiscard]] AtomicRequest::Outcome light(const drmModeModeInfo& mode,
+                                             std::uint32_t framebuffer, std::uint64_t serial) const;
+
+  /// Shows @p framebuffer from the next vblank on. @p fence: signals when its pixels are written;
+  /// -1: they are. Never changes the mode.
+  [[nodiscard]] AtomicRequest::Outcome flip(std::uint32_t framebuffer, int fence,
+                                            std::uint64_t serial) const;
+
+  /// Switches the screen off, so that the next light() trains its link anew. Waits for it.
+  [[nodiscard]] AtomicRequest::Outcome darken() const;
+
+  /// Whether the driver tells vblanks; without, flips happen at once and carry no number.
+  [[nodiscard]] bool hasVblanks() const;
+  [[nodiscard]] bool takesFences() const { return plane_properties_.id("IN_FENCE_FD") != 0; }
+
+ private:
+  Output(int fd, Connector connector) : fd_(fd), connector_(std::move(connector)) {}
+  void clear(AtomicRequest& request) const;
+  void addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::uint32_t mode_blob,
+               std::uint32_t framebuffer) const;
+  void addDesirable(AtomicRequest& request) const;
+
+  int fd_;
+  Connector connector_;
+  std::uint32_t crtc_ = 0;
+  Properties crtc_properties_;
+  std::uint32_t plane_ = 0;
+  Properties plane_properties_;
+  std::uint32_t framebuffer_property_ = 0;  // looked up once: it is every flip's
+  std::uint32_t fence_property_ = 0;
+};
+
+}  // namespace ui::kms
