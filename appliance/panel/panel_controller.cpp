@@ -38,8 +38,9 @@ std::optional<PanelCommand> PanelController::onEvent(const hal::ButtonEvent& eve
     letGo(event.button);
     return std::nullopt;
   }
+  // A check that is due already stays so: quick presses must not put it off for ever.
+  if (!nextTime()) next_check_ = event.at + kRepeatEvery;
   down_[static_cast<std::size_t>(event.button)] = true;
-  next_check_ = event.at + kRepeatEvery;
   const Meaning& meaning = meaningOf(event.button);
   held_.reset();
   if (meaning.held == WhenHeld::kRepeats) held_ = {event.button, event.at + kRepeatAfter};

@@ -52,6 +52,17 @@ TEST(FeatureProfile, SwitchesEveryAutomaticFunctionOffBeforeItsManualValue) {
   EXPECT_GT(at("TriggerMode"), at("TriggerSource"));
 }
 
+TEST(FeatureProfile, DelaysTheTriggerAndForgivesOnlyAMissingZero) {
+  const auto delayOf = [](double delay_us) {
+    const auto settings = featureSettings({.trigger_delay_us = delay_us});
+    return *std::ranges::find(settings, std::string("TriggerDelay"), &FeatureSetting::name);
+  };
+  EXPECT_EQ(std::get<double>(delayOf(12.5).value), 12.5);
+  EXPECT_EQ(delayOf(12.5).older_name, "TriggerDelayAbs");
+  EXPECT_FALSE(delayOf(12.5).optional);
+  EXPECT_TRUE(delayOf(0).optional) << "a camera without the feature does not delay";
+}
+
 TEST(FeatureProfile, LeavesTheTriggerOffForACameraThatRunsFree) {
   const auto settings = featureSettings({.trigger_source = std::string(hal::kFreeRunning)});
   const auto mode = std::ranges::find(settings, std::string("TriggerMode"), &FeatureSetting::name);

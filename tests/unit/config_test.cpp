@@ -66,10 +66,15 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "cameras.socket_buffer_bytes=1000000",
                                           "cameras.packet_timeout_us=4000",
                                           "cameras.frame_retention_us=20000",
+                                          "cameras.opto_delay_us=[0,30]",
                                           "trigger.backend=x",
                                           "trigger.rate_hz=30",
                                           "trigger.pulse_width_us=50",
                                           "trigger.wire_port=4000",
+                                          "trigger.lines=[\"TRIGGER\"]",
+                                          "trigger.active_low=true",
+                                          "trigger.loopback_line=TRIGGER_BACK",
+                                          "trigger.loopback_active_low=true",
                                           "history.sets=200",
                                           "history.in_flight=10",
                                           "history.reserve=5",
@@ -83,6 +88,10 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "display.font=/x",
                                           "panel.backend=terminal",
                                           "panel.script=/x",
+                                          "panel.button_prefix=b-",
+                                          "panel.lamp_prefix=l-",
+                                          "panel.active_low=false",
+                                          "panel.debounce_ms=5",
                                           "director.delay_ladder_s=[1,2]",
                                           "director.sweep_views_per_s=5",
                                           "record.directory=/x",
@@ -151,6 +160,7 @@ TEST(Config, RefusesWrongTypesAndRangesInOneLine) {
 TEST(Config, RefusesKeysThatContradictEachOther) {
   EXPECT_THAT(faultOf("[cameras]\nexposure_us = 25000"), HasSubstr("shorter than the trigger's"));
   EXPECT_THAT(faultOf("[trigger]\npulse_width_us = 25000"), HasSubstr("shorter than"));
+  EXPECT_THAT(faultOf("[panel]\nlamp_prefix = \"button-\""), HasSubstr("must differ"));
   EXPECT_THAT(faultOf("[history]\nin_flight = 3"), HasSubstr("in_flight must be at least 4"));
   EXPECT_THAT(faultOf("", {"trigger.rate_hz=1000", "cameras.exposure_us=500"}),
               HasSubstr("in_flight must be at least 32"));

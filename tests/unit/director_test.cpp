@@ -347,6 +347,20 @@ TEST_F(DirectorOnAnArcOfFive, GoLiveLeavesEveryModeWithOnePress) {
   EXPECT_EQ(shot.trigger, history.newest);
 }
 
+TEST_F(DirectorOnAnArcOfFive, HomeIsLiveAndTheMiddleViewFromEveryMode) {
+  for (const auto kind : {kGoLive, kFreezeToggle, kDelayMore, kStepBack, kSweep}) {
+    tick();
+    setView(4);
+    press(kind);
+    const Shot shot = press(kHome);
+    EXPECT_EQ(shot.mode, Mode::kLive);
+    EXPECT_EQ(shot.camera_shown, 2u);
+    EXPECT_EQ(shot.trigger, 1000u);
+    EXPECT_EQ(press(kFreezeToggle).mode, Mode::kFrozen) << "nothing of the mode before is left";
+    press(kGoLive);
+  }
+}
+
 TEST_F(DirectorOnAnArcOfFive, DelayKeysLeaveAFrozenMoment) {
   (void)tick();
   (void)press(kFreezeToggle);

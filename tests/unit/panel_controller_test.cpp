@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "appliance/panel/lamps.h"
+
 namespace {
 
 using appliance::Command;
@@ -67,12 +69,50 @@ TEST_F(PanelUnderAFakeClock, AHeldStepKeyRepeatsEightTimesASecondAfter400Ms) {
   EXPECT_TRUE(repetitions(5000).empty());
 }
 
-TEST_F(PanelUnderAFakeClock, FreezeLiveAndSweepDoNotRepeat) {
-  for (const Button button : {Button::kLive, Button::kFreeze, Button::kSweep}) {
+TEST_F(PanelUnderAFakeClock, FreezeAndSweepDoNotRepeat) {
+  for (const Button button : {Button::kFreeze, Button::kSweep}) {
     (void)press(button, 0);
     EXPECT_TRUE(repetitions(3000).empty());
     (void)release(button, 3000);
   }
+}
+
+TEST_F(PanelUnderAFakeClock, LiveActsAtOnceAndHeldFor1500MsGoesHomeOnce) {
+  const auto at_once = press(Button::kLive, 0);
+  ASSERT_TRUE(at_once.has_value());
+  EXPECT_EQ(at_once->command.kind, Command::Kind::kGoLive);
+  std::vector<PanelCommand> later;
+  while (*controller.nextTime() <= instant(10'000)) {
+    if (const auto command = controller.onTime(*controller.nextTime())) later.push_back(*command);
+  }
+  ASSERT_EQ(later.size(), 1U);
+  EXPECT_EQ(later[0].command.kind, Command::Kind::kHome);
+  EXPECT_EQ(later[0].cause, instant(1500));
+  EXPECT_FALSE(release(Button::kLive, 10'000).has_value());
+}
+
+TEST_F(PanelUnderAFakeClock, LiveLetGoInTimeDoesNotGoHome) {
+  (void)press(Button::kLive, 0);
+  EXPECT_TRUE(repetitions(1490).empty());
+  (void)release(Button::kLive, 1490);
+  EXPECT_TRUE(repetitions(5000).empty());
+  (void)press(Button::kLive, 6000);
+  held.erase(Button::kLive);  // this release gets lost
+  EXPECT_TRUE(repetitions(20'000).empty());
+}
+
+TEST_F(PanelUnderAFakeClock, AnotherKeyPressedMeanwhileKeepsFromGoingHome) {
+  (void)press(Button::kLive, 0);
+  (void)press(Button::kFreeze, 700);
+  EXPECT_TRUE(repetitions(5000).empty());
+}
+
+TEST(Lamps, ShowTheModeByOneLamp) {
+  using appliance::Mode;
+  EXPECT_EQ(appliance::lampOf(Mode::kLive), hal::Lamp::kLive);
+  EXPECT_EQ(appliance::lampOf(Mode::kDelayed), hal::Lamp::kDelayed);
+  EXPECT_EQ(appliance::lampOf(Mode::kFrozen), hal::Lamp::kFrozen);
+  EXPECT_EQ(appliance::lampOf(Mode::kSweep), hal::Lamp::kFrozen);
 }
 
 TEST_F(PanelUnderAFakeClock, LateCallsDoNotMakeUpForMissedRepetitions) {

@@ -240,6 +240,12 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
   auto lateness = between(run.lines["trigger"], "deadline", "trigger_edge_after");
   for (double& value : lateness) value *= 1e3;
   out["trigger_lateness_us"] = spread(lateness);
+  std::vector<double> edge_delay;
+  for (const json& seen : run.lines["loopback"])
+    if (const auto edge = run.edge.find(seen["trigger"].get<std::int64_t>());
+        edge != run.edge.end())
+      edge_delay.push_back(static_cast<double>(ns(seen, "edge") - edge->second) * 1e-3);
+  out["trigger_edge_delay_us"] = spread(edge_delay);
   out["button_to_commit_ms"] = spread(between(pictures, "button_event", "commit"));
   out["stages_ms"] = {
       {"trigger_edge_to_frame_ready", spread(ready)},

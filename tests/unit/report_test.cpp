@@ -58,6 +58,9 @@ class RunWriter {
          {"trigger_edge_before_ns", deadline_ns + late_ns},
          {"trigger_edge_after_ns", deadline_ns + late_ns + 4000}});
   }
+  void loopback(std::int64_t trigger, std::int64_t edge_ns) {
+    add({{"record", "loopback"}, {"trigger", trigger}, {"edge_ns", edge_ns}});
+  }
   void frame(int camera, std::int64_t trigger, std::int64_t frame_id, const char* status,
              std::int64_t first_ns, std::int64_t last_ns, std::int64_t ready_ns) {
     add({{"record", "frame"},
@@ -143,6 +146,8 @@ RunFiles eventfulRun() {
     const std::int64_t late_ns = upTo(200'000);
     const std::int64_t edge_ns = kStart_ns + t * kPeriod_ns + late_ns;
     run.trigger(t, edge_ns - late_ns, late_ns);
+    // A lost edge, and one near no trigger: neither is a delay.
+    if (t % 50 != 0) run.loopback(t % 50 == 1 ? 0 : t, edge_ns + 3000 + upTo(9000));
     for (int camera = 0; camera < kCameras; ++camera) {
       const std::int64_t id = t + 65500;  // wraps on the wire
       const std::int64_t first_ns = edge_ns + 1'200'000 + upTo(300'000);
@@ -195,6 +200,8 @@ TEST_P(RecomputedFigures, AreTheReportsFigures) {
   EXPECT_GT(report["pictures_repeated"], 0);
   for (const auto& [name, stage] : report["stages_ms"].items())
     EXPECT_GT(stage["count"], 50) << name;
+  EXPECT_EQ(report["trigger_edge_delay_us"]["count"], 192);
+  EXPECT_GT(report["trigger_edge_delay_us"]["sd"], 1);
   for (const auto& [name, mode] : report["by_mode"].items())
     EXPECT_GT(mode["pictures"], 10) << name;
   EXPECT_EQ(report["last_packet_from"], with_wire_log ? "wire log" : "trace");

@@ -89,6 +89,16 @@ TEST(TraceFile, ReadsBackWhatWasWritten) {
   appendLine(text, SetRecord{12, fromNs(7)});
   appendLine(text, kPicture);
   appendLine(text, FlipRecord{9, fromNs(11), 13});
+  appendLine(text, appliance::LoopbackRecord{12, fromNs(14)});
+  appendLine(text, appliance::GenlockRecord{.trigger = 13,
+                                            .state = appliance::GenlockState::kAcquiring,
+                                            .reason = appliance::GenlockReason::kPhaseLost,
+                                            .hold_over = true,
+                                            .vblanks_per_trigger = 2,
+                                            .phase_error = rt::Nanoseconds(-15),
+                                            .lead = rt::Nanoseconds(16),
+                                            .vblank_period = rt::Nanoseconds(17),
+                                            .unlocks = 18});
   SummaryRecord summary;
   summary.clean_stop = true;
   summary.cpu_seconds = 12.25;
@@ -113,6 +123,9 @@ TEST(TraceFile, ReadsBackWhatWasWritten) {
   appendLine(again, trace->sets.at(0));
   appendLine(again, trace->pictures.at(0));
   appendLine(again, trace->flips.at(0));
+  appendLine(again, trace->loopbacks.at(0));
+  appendLine(again, trace->genlocks.at(0));
+  EXPECT_EQ(trace->genlocks.at(0).phase_error, rt::Nanoseconds(-15));
   EXPECT_EQ(again + appliance::toLine(*trace->summary), text);
 }
 
