@@ -28,13 +28,16 @@ std::size_t wholePages(std::size_t bytes) {
 
 }  // namespace
 
-CameraFrames::CameraFrames(std::vector<std::span<std::byte>> slots, std::uint32_t sets,
+CameraFrames::CameraFrames(std::vector<std::span<std::byte>> slots,
+                           std::vector<rt::DmaBufPart> dma_bufs, std::uint32_t sets,
                            std::uint32_t in_flight)
     : slots_(std::move(slots)),
+      dma_bufs_(std::move(dma_bufs)),
       frames_(slots_.size()),
       places_(sets),
       pool_(static_cast<std::uint32_t>(slots_.size())) {
   assert(slots_.size() > std::size_t{sets} + in_flight && slots_.size() < 1U << kSlotBits);
+  assert(dma_bufs_.empty() || dma_bufs_.size() == slots_.size());
   for (std::uint32_t i = 0; i < in_flight; ++i) first_slots_.push_back(*pool_.tryAcquire());
 }
 
@@ -63,7 +66,10 @@ std::optional<PinnedFrame> CameraFrames::tryPin(std::uint64_t trigger) RT_SAFE {
   const std::uint32_t slot = slotAt(found);
   auto pin = pool_.tryPin(slot, trigger);
   if (!pin) return std::nullopt;
-  return PinnedFrame{.pin = std::move(*pin), .pixels = slots_[slot].data(), .frame = frames_[slot]};
+  return PinnedFrame{.pin = std::move(*pin),
+                     .pixels = slots_[slot].data(),
+                     .dma_buf = dma_bufs_.empty() ? rt::DmaBufPart{} : dma_bufs_[slot],
+                     .frame = frames_[slot]};
 }
 
 bool CameraFrames::holds(std::uint64_t trigger) const RT_SAFE {
@@ -81,7 +87,7 @@ std::uint64_t CameraFrames::oldest() const RT_SAFE {
 std::size_t HistoryLayout::bytes() const {
   std::size_t sum = 0;
   for (const std::size_t frame : frame_bytes) {
-    sum += wholePages(frame) * (std::size_t{sets} + in_flight + reserve);
+    sum += wholePages(frame) * slots();
   }
   return sum;
 }
@@ -96,8 +102,10 @@ std::optional<HistoryLayout> fitHistory(HistoryLayout layout, std::size_t availa
 }
 
 std::expected<std::unique_ptr<FrameHistory>, std::string> FrameHistory::create(
-    const HistoryLayout& layout) {
-  auto arena = rt::LockedArena::create(layout.bytes());
+    const HistoryLayout& layout, HistorySharing sharing) {
+  const auto backing = sharing == HistorySharing::kShared ? rt::ArenaBacking::kMemoryFile
+                                                          : rt::ArenaBacking::kPrivate;
+  auto arena = rt::LockedArena::create(layout.bytes(), rt::LockedArena::kMarginBytes, backing);
   if (!arena) {
     char line[160];
     std::snprintf(line, sizeof line,
@@ -105,22 +113,37 @@ std::expected<std::unique_ptr<FrameHistory>, std::string> FrameHistory::create(
                   static_cast<double>(layout.bytes()) * 1e-9, arena.error().where);
     return std::unexpected(std::string(line));
   }
-  return std::unique_ptr<FrameHistory>(new FrameHistory(std::move(*arena), layout));
+  return std::unique_ptr<FrameHistory>(new FrameHistory(std::move(*arena), layout, sharing));
 }
 
-FrameHistory::FrameHistory(rt::LockedArena arena, const HistoryLayout& layout)
+FrameHistory::FrameHistory(rt::LockedArena arena, const HistoryLayout& layout,
+                           HistorySharing sharing)
     : arena_(std::move(arena)), sets_(layout.sets) {
+  if (sharing == HistorySharing::kShared) shared_ = share(layout);
   std::span<std::byte> rest = arena_.bytes();
+  std::size_t shared_slot = 0;
   for (const std::size_t frame : layout.frame_bytes) {
-    std::vector<std::span<std::byte>> slots(std::size_t{layout.sets} + layout.in_flight +
-                                            layout.reserve);
+    std::vector<std::span<std::byte>> slots(layout.slots());
+    std::vector<rt::DmaBufPart> dma_bufs(shared_ ? slots.size() : 0);
     for (auto& slot : slots) {
       slot = rest.first(frame);
       rest = rest.subspan(wholePages(frame));
     }
-    cameras_.push_back(
-        std::make_unique<CameraFrames>(std::move(slots), layout.sets, layout.in_flight));
+    for (auto& part : dma_bufs) part = shared_->part(shared_slot++);
+    cameras_.push_back(std::make_unique<CameraFrames>(std::move(slots), std::move(dma_bufs),
+                                                      layout.sets, layout.in_flight));
   }
+}
+
+std::optional<SharedSlots> FrameHistory::share(const HistoryLayout& layout) {
+  std::vector<std::size_t> slot_bytes;
+  for (const std::size_t frame : layout.frame_bytes) {
+    slot_bytes.insert(slot_bytes.end(), layout.slots(), wholePages(frame));
+  }
+  auto shared = SharedSlots::create(arena_, slot_bytes);
+  if (shared) return std::move(*shared);
+  not_shared_ = shared.error();
+  return std::nullopt;
 }
 
 }  // namespace appliance

@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "appliance/capture/shared_slots.h"
 #include "rt/annotations.h"
 #include "rt/clock.h"
+#include "rt/dma_buf.h"
 #include "rt/memory.h"
 #include "rt/slot_pool.h"
 
@@ -29,6 +31,7 @@ struct StoredFrame {
 struct PinnedFrame {
   rt::SlotPin pin;
   const std::byte* pixels = nullptr;
+  rt::DmaBufPart dma_buf;  ///< the same bytes, where the history is shared
   StoredFrame frame;
 };
 
@@ -44,9 +47,9 @@ struct PinnedFrame {
 /// Memory   All pins of all readers together hold at most `reserve` slots.
 class CameraFrames {
  public:
-  /// @p slots: memory of sets + in_flight + reserve frames.
-  CameraFrames(std::vector<std::span<std::byte>> slots, std::uint32_t sets,
-               std::uint32_t in_flight);
+  /// @p slots: memory of sets + in_flight + reserve frames; @p dma_bufs: beside them, or empty.
+  CameraFrames(std::vector<std::span<std::byte>> slots, std::vector<rt::DmaBufPart> dma_bufs,
+               std::uint32_t sets, std::uint32_t in_flight);
 
   [[nodiscard]] std::span<const std::span<std::byte>> slots() const { return slots_; }
 
@@ -72,6 +75,7 @@ class CameraFrames {
 
  private:
   std::vector<std::span<std::byte>> slots_;
+  std::vector<rt::DmaBufPart> dma_bufs_;            // beside slots_, or empty
   std::vector<StoredFrame> frames_;                 // beside slots_; guarded by the slot's state
   std::vector<std::atomic<std::uint64_t>> places_;  // set index -> trigger and slot
   rt::SlotPool pool_;
@@ -87,6 +91,7 @@ struct HistoryLayout {
   std::uint32_t in_flight = 8;           ///< in the cameras' hands
   std::uint32_t reserve = 4;             ///< pinned by readers at once
 
+  [[nodiscard]] std::size_t slots() const { return std::size_t{sets} + in_flight + reserve; }
   /// What the layout takes, every slot rounded up to whole pages.
   [[nodiscard]] std::size_t bytes() const;
 };
@@ -97,13 +102,16 @@ struct HistoryLayout {
                                                       std::size_t available_bytes,
                                                       std::uint32_t fewest_sets);
 
+/// Whether somebody else, a GPU, reads the frames where they are.
+enum class HistorySharing : std::uint8_t { kPrivate, kShared };
+
 /// The frame history of the rig: one block of locked memory, cut into every camera's slots.
 ///
 /// Threads  create(): a SCHED_OTHER thread, blocks for seconds while memory is prefaulted.
 class FrameHistory {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<FrameHistory>, std::string> create(
-      const HistoryLayout& layout);
+      const HistoryLayout& layout, HistorySharing sharing = HistorySharing::kPrivate);
 
   [[nodiscard]] CameraFrames& camera(std::uint32_t index) { return *cameras_[index]; }
   [[nodiscard]] const CameraFrames& camera(std::uint32_t index) const { return *cameras_[index]; }
@@ -112,11 +120,16 @@ class FrameHistory {
   }
   [[nodiscard]] std::uint32_t sets() const { return sets_; }
   [[nodiscard]] const rt::LockedArena& memory() const { return arena_; }
+  /// Why a history that was to be shared is not, in one line; empty otherwise.
+  [[nodiscard]] const std::string& notShared() const { return not_shared_; }
 
  private:
-  FrameHistory(rt::LockedArena arena, const HistoryLayout& layout);
+  FrameHistory(rt::LockedArena arena, const HistoryLayout& layout, HistorySharing sharing);
+  [[nodiscard]] std::optional<SharedSlots> share(const HistoryLayout& layout);
 
   rt::LockedArena arena_;
+  std::string not_shared_;
+  std::optional<SharedSlots> shared_;
   std::uint32_t sets_;
   std::vector<std::unique_ptr<CameraFrames>> cameras_;
 };
