@@ -9,6 +9,7 @@
 #include "hal/camera.h"
 #include "hal/display_timing.h"
 #include "rt/clock.h"
+#include "rt/dma_buf.h"
 #include "rt/result.h"
 
 namespace hal {
@@ -19,6 +20,7 @@ struct SourceImage {
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
   PixelFormat format = PixelFormat::kBayerRG8;
+  rt::DmaBufPart dma_buf;  ///< the same bytes for a GPU, if valid; they hold for render(), too
 };
 
 /// Pinhole and Brown-Conrady distortion in OpenCV's convention (k1, k2, p1, p2, k3).
@@ -58,6 +60,7 @@ struct RenderInstants {
   rt::Timestamp warp_submit;  ///< drawing starts: demosaic and upload come next
   rt::Timestamp upload_end;   ///< demosaiced and uploaded
   rt::Timestamp warp_end;     ///< all pixels written
+  bool imported = false;      ///< the frame was read in its slot, not uploaded
 };
 
 struct PageFlip {
@@ -91,6 +94,9 @@ class Display {
   [[nodiscard]] virtual DisplayMode mode() const = 0;
   /// What draws, for the report: GL_RENDERER.
   [[nodiscard]] virtual std::string_view renderer() const = 0;
+  /// Why frames are uploaded even where they come as dma-bufs, in one line; empty where those are
+  /// read in place.
+  [[nodiscard]] virtual std::string_view uploadReason() const = 0;
 
   /// Draws into a free buffer, done when it returns. Without a plan the picture is empty.
   [[nodiscard]] virtual rt::Result<RenderInstants> render(const WarpPlan* plan,

@@ -11,10 +11,11 @@ namespace {
 
 constexpr const char* kInstall = "install libegl1, libgles2 and libgl1-mesa-dri, or a GPU's driver";
 
-EGLDisplay openSurfaceless() {
+EGLDisplay openDisplay(gbm_device* gbm) {
   const auto get_platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
       eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (get_platform_display == nullptr) return EGL_NO_DISPLAY;
+  if (gbm != nullptr) return get_platform_display(EGL_PLATFORM_GBM_KHR, gbm, nullptr);
   // The handle is the process's only one for this platform, so no context ever terminates it.
   return get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
@@ -22,12 +23,12 @@ EGLDisplay openSurfaceless() {
 }  // namespace
 
 std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
-    std::optional<unsigned> software_threads) {
+    std::optional<unsigned> software_threads, gbm_device* gbm) {
   if (software_threads) {
     // An operator's own setting of the driver's variable goes first.
     ::setenv("LP_NUM_THREADS", std::to_string(*software_threads).c_str(), /*replace=*/0);
   }
-  EGLDisplay display = openSurfaceless();
+  EGLDisplay display = openDisplay(gbm);
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
     return std::unexpected(std::string("no EGL without a window system: ") + kInstall);
   }
@@ -43,7 +44,7 @@ std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
   if (context == EGL_NO_CONTEXT) {
     return std::unexpected(std::string("no OpenGL ES 3 context: ") + kInstall);
   }
-  std::unique_ptr<EglContext> made(new EglContext(display, context));
+  std::unique_ptr<EglContext> made(new EglContext(display, context, gbm == nullptr));
   if (!made->bind()) {
     return std::unexpected(std::string("EGL cannot make a context current without a surface: ") +
                            kInstall);
@@ -57,6 +58,7 @@ std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
 EglContext::~EglContext() {
   release();
   eglDestroyContext(display_, context_);
+  if (!surfaceless_) eglTerminate(display_);  // it ends before its card
 }
 
 bool EglContext::bind() {

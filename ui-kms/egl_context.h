@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+struct gbm_device;
+
 namespace ui {
 
 /// One OpenGL ES 3 context without a window surface: pictures go into framebuffer objects.
@@ -17,8 +19,9 @@ class EglContext {
  public:
   /// @p software_threads: worker threads of a software renderer (0 draws on the caller);
   /// without a value the driver's default. Only the first context of a process decides.
+  /// @p gbm: draws on that graphics card, and outlives the context; none: on any.
   [[nodiscard]] static std::expected<std::unique_ptr<EglContext>, std::string> create(
-      std::optional<unsigned> software_threads);
+      std::optional<unsigned> software_threads, gbm_device* gbm = nullptr);
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
@@ -29,16 +32,23 @@ class EglContext {
   /// The calling thread lets go of the context.
   void release();
 
+  /// EGLDisplay.
+  [[nodiscard]] void* display() const { return display_; }
   /// GL_RENDERER.
   [[nodiscard]] const std::string& renderer() const { return renderer_; }
   /// Whether the CPU draws: then every shader instruction is paid in milliseconds.
   [[nodiscard]] bool software() const { return software_; }
+  /// Whether imported memory may be drawn from. Mesa's software renderer on a KMS device offers the
+  /// import, but cannot map what it imported, and crashes at the first pixel.
+  [[nodiscard]] bool readsForeignMemory() const { return surfaceless_ || !software_; }
 
  private:
-  EglContext(void* display, void* context) : display_(display), context_(context) {}
+  EglContext(void* display, void* context, bool surfaceless)
+      : display_(display), context_(context), surfaceless_(surfaceless) {}
 
   void* display_;  // EGLDisplay and EGLContext: EGL's header stays out of ours
   void* context_;
+  bool surfaceless_;
   std::string renderer_;
   bool software_ = false;
 };

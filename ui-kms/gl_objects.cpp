@@ -31,11 +31,26 @@ void deleteBuffer(GLuint name) {
 void deleteFramebuffer(GLuint name) {
   glDeleteFramebuffers(1, &name);
 }
+void deleteRenderbuffer(GLuint name) {
+  glDeleteRenderbuffers(1, &name);
+}
 void deleteProgram(GLuint name) {
   glDeleteProgram(name);
 }
 void deleteVertexArray(GLuint name) {
   glDeleteVertexArrays(1, &name);
+}
+
+GlFramebuffer makeFramebuffer() {
+  GLuint name = 0;
+  glGenFramebuffers(1, &name);
+  return GlFramebuffer(name);
+}
+
+GlRenderbuffer makeRenderbuffer() {
+  GLuint name = 0;
+  glGenRenderbuffers(1, &name);
+  return GlRenderbuffer(name);
 }
 
 GlBuffer makeBuffer() {
@@ -69,10 +84,8 @@ RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px) {
   target.width_px = width_px;
   target.height_px = height_px;
   target.colour = makeTexture(GL_RGBA8, width_px, height_px, GL_LINEAR, GL_CLAMP_TO_EDGE);
-  GLuint name = 0;
-  glGenFramebuffers(1, &name);
-  target.framebuffer = GlFramebuffer(name);
-  glBindFramebuffer(GL_FRAMEBUFFER, name);
+  target.framebuffer = makeFramebuffer();
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.colour.get(),
                          0);
   return target;

@@ -33,16 +33,20 @@ class GlHandle {
 void deleteTexture(GLuint name);
 void deleteBuffer(GLuint name);
 void deleteFramebuffer(GLuint name);
+void deleteRenderbuffer(GLuint name);
 void deleteProgram(GLuint name);
 void deleteVertexArray(GLuint name);
 
 using GlTexture = GlHandle<deleteTexture>;
 using GlBuffer = GlHandle<deleteBuffer>;
 using GlFramebuffer = GlHandle<deleteFramebuffer>;
+using GlRenderbuffer = GlHandle<deleteRenderbuffer>;
 using GlProgram = GlHandle<deleteProgram>;
 using GlVertexArray = GlHandle<deleteVertexArray>;
 
 [[nodiscard]] GlBuffer makeBuffer();
+[[nodiscard]] GlFramebuffer makeFramebuffer();
+[[nodiscard]] GlRenderbuffer makeRenderbuffer();
 [[nodiscard]] GlVertexArray makeVertexArray();
 
 /// Immutable storage of one level; @p format is a sized internal format.
@@ -51,7 +55,7 @@ using GlVertexArray = GlHandle<deleteVertexArray>;
 
 /// A picture to draw into. Row 0 is the picture's top row, as scanout wants it.
 struct RenderTarget {
-  GlTexture colour;
+  GlTexture colour;  ///< none where the framebuffer draws into other memory
   GlFramebuffer framebuffer;
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;

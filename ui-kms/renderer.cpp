@@ -12,7 +12,7 @@ namespace ui {
 
 std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
     const RendererConfig& config) {
-  auto context = EglContext::create(config.software_threads);
+  auto context = EglContext::create(config.software_threads, config.gbm);
   if (!context) return std::unexpected(context.error());
   std::unique_ptr<Renderer> renderer(new Renderer(std::move(*context)));
   DemosaicSite site = config.demosaic;
@@ -24,16 +24,30 @@ std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
   auto source = SourceTexture::create(site);
   if (!source) return std::unexpected(source.error());
   renderer->source_ = std::move(*source);
-  auto warp = WarpPass::create(config.width_px, config.height_px);
-  if (!warp) return std::unexpected(warp.error());
-  renderer->warp_ = std::move(*warp);
-  if (auto status = StatusLinePass::create(config.font_path, config.width_px, config.height_px)) {
-    renderer->status_ = std::move(*status);
-  } else {
-    renderer->text_warning_ = status.error() + "; pictures go on without text";
+  renderer->source_->tryImport(*renderer->context_, config.source_width_px,
+                               config.source_height_px);
+  renderer->font_path_ = config.font_path;
+  if (auto sized = renderer->resize(config.width_px, config.height_px); !sized) {
+    return std::unexpected(sized.error());
   }
   renderer->warmUp(config);
   return renderer;
+}
+
+std::expected<void, std::string> Renderer::resize(std::uint32_t width_px,
+                                                  std::uint32_t height_px) {
+  auto warp = WarpPass::create(width_px, height_px);
+  if (!warp) return std::unexpected(warp.error());
+  warp_ = std::move(*warp);
+  auto status = StatusLinePass::create(font_path_, width_px, height_px);
+  status_.reset();
+  text_warning_.clear();
+  if (status) {
+    status_ = std::move(*status);
+  } else {
+    text_warning_ = status.error() + "; pictures go on without text";
+  }
+  return {};
 }
 
 /// Drivers compile at the first draw. That belongs here, on the thread that may take its time
@@ -57,13 +71,14 @@ hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::WarpPl
   hal::RenderInstants instants;
   instants.warp_submit = rt::now();
   const bool drawable = plan != nullptr && plan->source.pixels != nullptr;
-  const GLuint texture = drawable ? source_->upload(plan->source) : 0;
+  const auto source = drawable ? source_->load(plan->source) : SourceTexture::Loaded{};
+  instants.imported = source.imported;
   instants.upload_end = rt::now();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glViewport(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px));
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  if (drawable) warp_->draw(*plan, texture);
+  if (drawable) warp_->draw(*plan, source.colour);
   if (status_) status_->draw(status);
   glFinish();
   instants.warp_end = rt::now();

@@ -23,6 +23,7 @@ struct RendererConfig {
   std::uint32_t source_height_px = 0;
   std::string font_path;                     ///< empty: the usual places of DejaVu Sans
   std::optional<unsigned> software_threads;  ///< of a software renderer; none: its default
+  gbm_device* gbm = nullptr;                 ///< the graphics card; none: any
   DemosaicSite demosaic = DemosaicSite::kAuto;
 };
 
@@ -38,8 +39,15 @@ class Renderer {
 
   [[nodiscard]] EglContext& context() { return *context_; }
   [[nodiscard]] const EglContext& context() const { return *context_; }
+  /// Why frames are uploaded even where they come as dma-bufs; empty where those are read in place.
+  [[nodiscard]] const std::string& uploadReason() const { return source_->uploadReason(); }
   /// Why there is no status line; empty where there is one.
   [[nodiscard]] const std::string& textWarning() const { return text_warning_; }
+
+  /// Another size of pictures from now on. Compiles shaders: tens of milliseconds.
+  /// Errors: one line; the size is as before.
+  [[nodiscard]] std::expected<void, std::string> resize(std::uint32_t width_px,
+                                                        std::uint32_t height_px);
 
   /// Draws all of @p target; the pixels are written when it returns.
   hal::RenderInstants draw(const RenderTarget& target, const hal::WarpPlan* plan,
@@ -48,6 +56,8 @@ class Renderer {
  private:
   explicit Renderer(std::unique_ptr<EglContext> context) : context_(std::move(context)) {}
   void warmUp(const RendererConfig& config);
+
+  std::string font_path_;
 
   std::unique_ptr<EglContext> context_;  // first, so that it outlives all GL objects
   std::optional<SourceTexture> source_;

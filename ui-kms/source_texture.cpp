@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "ui-kms/cpu_demosaic.h"
+#include "ui-kms/import_probe.h"
 
 namespace ui {
 
@@ -42,26 +43,55 @@ SourceTexture::Storage& SourceTexture::storageFor(std::uint32_t width_px, std::u
   return storages_.emplace_back(std::move(storage));
 }
 
-GLuint SourceTexture::upload(const hal::SourceImage& source) {
+void SourceTexture::tryImport(const EglContext& context, std::uint32_t width_px,
+                              std::uint32_t height_px) {
+  const auto started = startImport(context, width_px, height_px);
+  upload_reason_ = started ? std::string() : started.error();
+}
+
+std::expected<void, std::string> SourceTexture::startImport(const EglContext& context,
+                                                            std::uint32_t width_px,
+                                                            std::uint32_t height_px) {
+  if (site_ == DemosaicSite::kCpu) return std::unexpected("the CPU demosaics");
+  if (!context.readsForeignMemory()) {
+    return std::unexpected("a software renderer on a KMS device cannot read imported memory");
+  }
+  if (width_px == 0 || height_px == 0) return std::unexpected("the frames' size is not known");
+  auto import = DmaBufImport::create();
+  if (!import) return std::unexpected(import.error());
+  auto probed = probeImport(**import, *pass_, width_px, height_px);
+  if (probed) import_ = std::move(*import);
+  return probed;
+}
+
+SourceTexture::Loaded SourceTexture::load(const hal::SourceImage& source) {
   Storage& storage = storageFor(source.width_px, source.height_px);
-  const auto width = static_cast<GLsizei>(source.width_px);
-  const auto height = static_cast<GLsizei>(source.height_px);
   glActiveTexture(GL_TEXTURE0);
+  Loaded loaded{.colour = storage.colour.colour.get()};
   if (site_ == DemosaicSite::kCpu) {
     demosaicOnCpu(source, storage.rgba);
     // Straight from memory: mapping a pixel buffer and demosaicing into it measured the same.
-    glBindTexture(GL_TEXTURE_2D, storage.colour.colour.get());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE,
-                    storage.rgba.data());
+    upload(loaded.colour, GL_RGBA, source, storage.rgba.data());
   } else {
-    glBindTexture(GL_TEXTURE_2D, storage.mosaic.get());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RED, GL_UNSIGNED_BYTE, source.pixels);
-    pass_->draw(storage.mosaic.get(), source.format, storage.colour);
+    GLuint mosaic = import_ ? import_->tryImport(source) : 0;
+    loaded.imported = mosaic != 0;
+    if (!loaded.imported) {
+      mosaic = storage.mosaic.get();
+      upload(mosaic, GL_RED, source, source.pixels);
+    }
+    pass_->draw(mosaic, source.format, storage.colour);
   }
-  glFinish();  // so that the instant that follows is true
-  return storage.colour.colour.get();
+  // So that the instant that follows is true, and the frame's slot may be written again.
+  glFinish();
+  return loaded;
+}
+
+void SourceTexture::upload(GLuint texture, GLenum format, const hal::SourceImage& source,
+                           const std::byte* data) {
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(source.width_px),
+                  static_cast<GLsizei>(source.height_px), format, GL_UNSIGNED_BYTE, data);
 }
 
 }  // namespace ui

@@ -2,12 +2,15 @@
 
 #include <cstddef>
 #include <expected>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hal/display.h"
 #include "ui-kms/demosaic_pass.h"
+#include "ui-kms/dma_buf_import.h"
+#include "ui-kms/egl_context.h"
 #include "ui-kms/gl_objects.h"
 
 namespace ui {
@@ -18,7 +21,8 @@ enum class DemosaicSite : std::uint8_t {
   kGpu,   ///< one byte per pixel is uploaded and a shader does the rest
 };
 
-/// The shown view as a texture of linear light. Only the one view that is shown is uploaded.
+/// The shown view as a texture of linear light. Only the one view that is shown is uploaded; a GPU
+/// reads it in its slot instead, where import works.
 ///
 /// Threads  The one that has the context.
 /// Memory   Storage per source size is made by prepare(), or at that size's first upload.
@@ -29,8 +33,17 @@ class SourceTexture {
 
   void prepare(std::uint32_t width_px, std::uint32_t height_px);
 
-  /// Demosaics and uploads; the texture holds until the next call. Done when it returns.
-  [[nodiscard]] GLuint upload(const hal::SourceImage& source);
+  /// Reads frames of dma-bufs in place from now on, if a probe frame of that size comes through.
+  void tryImport(const EglContext& context, std::uint32_t width_px, std::uint32_t height_px);
+  /// Why no frame is read in place; empty where those of dma-bufs are.
+  [[nodiscard]] const std::string& uploadReason() const { return upload_reason_; }
+
+  struct Loaded {
+    GLuint colour = 0;      ///< holds until the next call
+    bool imported = false;  ///< read in place, not uploaded
+  };
+  /// Demosaics. Done when it returns: nothing reads the frame any more.
+  [[nodiscard]] Loaded load(const hal::SourceImage& source);
 
  private:
   struct Storage {
@@ -40,9 +53,15 @@ class SourceTexture {
   };
   explicit SourceTexture(DemosaicSite site) : site_(site) {}
   Storage& storageFor(std::uint32_t width_px, std::uint32_t height_px);
+  [[nodiscard]] std::expected<void, std::string> startImport(const EglContext& context,
+                                                             std::uint32_t width_px,
+                                                             std::uint32_t height_px);
+  void upload(GLuint texture, GLenum format, const hal::SourceImage& source, const std::byte* data);
 
   DemosaicSite site_;
   std::optional<DemosaicPass> pass_;
+  std::unique_ptr<DmaBufImport> import_;  // where it works
+  std::string upload_reason_ = "import was not tried";
   std::vector<Storage> storages_;
 };
 

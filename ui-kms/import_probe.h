@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <string>
+
+#include "ui-kms/demosaic_pass.h"
+#include "ui-kms/dma_buf_import.h"
+
+namespace ui {
+
+/// Whether frames of this size, imported, are drawn as they stand in memory, also after they have
+/// been written anew: one is made, imported, drawn twice and compared pixel by pixel. What EGL
+/// lists is not enough: drivers have wishes about pitch and offset that they state nowhere.
+///
+/// Threads  The one that has the context current.
+/// Errors   One line: what fails, and what to do where somebody can.
+[[nodiscard]] std::expected<void, std::string> probeImport(DmaBufImport& import, DemosaicPass& pass,
+                                                           std::uint32_t width_px,
+                                                           std::uint32_t height_px);
+
+}  // namespace ui
