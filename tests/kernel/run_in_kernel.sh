@@ -87,6 +87,7 @@ init=$(folder_of "$(dirname -- "$init")")/$(basename -- "$init")
 run=$(mktemp -d /var/tmp/kagami-bed.XXXXXX) || die "no temporary folder in /var/tmp"
 child=
 end() {
+  trap '' HUP INT TERM  # a second signal must not cut this short
   # shellcheck disable=SC2015  # neither may fail the end
   [ -n "$child" ] && kill "$child" 2>/dev/null && wait "$child" 2>/dev/null || true
   rm -rf "$run"
