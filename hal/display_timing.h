@@ -17,7 +17,7 @@ struct DisplayTiming {
   rt::Timestamp at;            ///< its instant: the estimate from many stamps, not its own stamp
   double period_ns = 0;        ///< above 0
   double stamp_jitter_ns = 0;  ///< rms of the stamps about the estimate
-  rt::Nanoseconds draw{};      ///< from warp_submit to commit, nearly always
+  rt::Nanoseconds draw{};      ///< from warp_submit to warp_end, nearly always
   rt::Nanoseconds commit_margin{};  ///< a commit nearer to a vblank than this may miss it
 
   [[nodiscard]] rt::Timestamp vblankAt(std::uint64_t number) const RT_SAFE {

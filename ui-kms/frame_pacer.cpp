@@ -90,8 +90,8 @@ void FramePacer::correct(double innovation_ns) RT_SAFE {
   jitter_ns2_ = std::max(jitter_ns2_, kLeastJitter_ns * kLeastJitter_ns);
 }
 
-void FramePacer::onPicture(rt::Timestamp warp_submit, rt::Timestamp commit) RT_SAFE {
-  draw_.add(commit - warp_submit);
+void FramePacer::onPicture(const hal::RenderInstants& instants) RT_SAFE {
+  draw_.add(instants.warp_end - instants.warp_submit);
 }
 
 std::optional<hal::DisplayTiming> FramePacer::timing() const RT_SAFE {

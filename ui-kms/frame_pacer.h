@@ -33,8 +33,8 @@ class FramePacer {
   /// Every flip, in order; also vblanks learnt of in another way. One seen twice is ignored.
   void onVblank(std::uint64_t vblank, rt::Timestamp stamp) RT_SAFE;
 
-  /// Every picture that was committed.
-  void onPicture(rt::Timestamp warp_submit, rt::Timestamp commit) RT_SAFE;
+  /// Every picture that was drawn.
+  void onPicture(const hal::RenderInstants& instants) RT_SAFE;
 
   /// None before the first kKnownAfter vblanks after a start.
   [[nodiscard]] std::optional<hal::DisplayTiming> timing() const RT_SAFE;

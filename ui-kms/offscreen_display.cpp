@@ -26,17 +26,6 @@ std::string complaint(const OffscreenConfig& config) {
   return {};
 }
 
-rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba) {
-  if (rgba.size() != std::size_t{4} * target.width_px * target.height_px) {
-    return std::unexpected(rt::Error{rt::Errc::kInvalidConfig, 0, "read: size of the buffer"});
-  }
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px),
-               GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  return {};
-}
-
 }  // namespace
 
 std::expected<std::unique_ptr<OffscreenDisplay>, std::string> OffscreenDisplay::create(
@@ -80,14 +69,12 @@ rt::Result<hal::RenderInstants> OffscreenDisplay::render(const hal::WarpPlan* pl
   if (!buffer) return std::unexpected(buffer.error());
   const hal::RenderInstants instants = renderer_->draw(targets_[*buffer], plan, status);
   chain_.finishDraw(*buffer);
-  warp_submit_ = instants.warp_submit;
+  pacer_.onPicture(instants);
   return instants;
 }
 
 rt::Result<rt::Timestamp> OffscreenDisplay::commit(std::uint64_t picture_id) {
-  const auto commit = chain_.commit(picture_id, rt::now());
-  if (commit) pacer_.onPicture(warp_submit_, *commit);
-  return commit;
+  return chain_.commit(picture_id, rt::now());
 }
 
 std::optional<hal::PageFlip> OffscreenDisplay::tryPopFlip() {

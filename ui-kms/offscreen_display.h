@@ -48,6 +48,7 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override {
     return pacer_.timing();
   }
+  [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return std::nullopt; }
   [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
   /// Nobody else can show anything here.
   void releaseScreen() override {}
@@ -62,7 +63,6 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   std::unique_ptr<Renderer> renderer_;
   SwapChain chain_;
   FramePacer pacer_;
-  rt::Timestamp warp_submit_;  // of the picture drawn last
   std::vector<RenderTarget> targets_;
 };
 

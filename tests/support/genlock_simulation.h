@@ -105,7 +105,7 @@ class GenlockSimulation {
         std::max(ready + someOf(std::chrono::microseconds(100)), renderer_free_);
     const rt::Timestamp commit = begin + world_.draw + someOf(world_.draw_spread);
     ready_.add(ready - edge);
-    pacer_.onPicture(begin, commit);
+    pacer_.onPicture({.warp_submit = begin, .upload_end = begin, .warp_end = commit});
     renderer_free_ = commit;
     // A screen whose last commit has not flipped yet is busy: the picture is skipped.
     const bool busy = commit < screen_.truly(last_vblank_);

@@ -143,7 +143,7 @@ TEST(FramePacer, GivesTheLatestStartOfAWarp) {
   SimulatedScreen screen({.nominal_hz = 100}, 0, kStart, 11);
   FramePacer pacer(100, 300us);
   feed(pacer, screen, 0, 50);
-  for (int i = 0; i < 100; ++i) pacer.onPicture(kStart, kStart + (i < 2 ? 90ms : 4ms));
+  for (int i = 0; i < 100; ++i) pacer.onPicture({kStart, kStart, kStart + (i < 2 ? 90ms : 4ms)});
   const hal::DisplayTiming timing = *pacer.timing();
   EXPECT_EQ(timing.draw, 4ms);
   EXPECT_EQ(timing.latestStart(60), timing.vblankAt(60) - 4ms - 300us);
