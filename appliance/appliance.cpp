@@ -249,8 +249,11 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
                                                       producer(kFirstCameraTrace + i)));
   }
   trigger_loop_ = std::make_unique<TriggerLoop>(
-      TriggerTiming{.period = period_, .pulse_width = microseconds(config_.trigger.pulse_width_us)},
-      *trigger_line_, board_.edges, producer(kTriggerTrace));
+      TriggerTiming{.period = period_,
+                    .pulse_width = microseconds(config_.trigger.pulse_width_us),
+                    .genlock = config_.trigger.genlock,
+                    .genlock_margin = microseconds(config_.trigger.genlock_margin_us)},
+      *trigger_line_, board_.edges, board_.genlock, producer(kTriggerTrace));
   if (loopback_ && trace_) {
     loopback_loop_ = std::make_unique<LoopbackLoop>(period_, *loopback_, board_.edges,
                                                     trace_->producer(kLoopbackTrace));

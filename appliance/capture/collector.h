@@ -8,6 +8,7 @@
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/frame_set.h"
+#include "appliance/capture/genlock_board.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/camera.h"
 #include "rt/doorbell.h"
@@ -19,6 +20,7 @@ struct CaptureBoard {
   explicit CaptureBoard(std::uint32_t cameras) : sets(cameras) {}
 
   EdgeBoard edges;
+  GenlockBoard genlock;
   FrameSetBoard sets;
   std::atomic<std::uint32_t> shown_camera{0};  ///< whose frames ring the bell; by the render thread
   rt::Doorbell frame_ready;                    ///< wakes the render thread

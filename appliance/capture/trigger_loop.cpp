@@ -1,9 +1,15 @@
 #include "appliance/capture/trigger_loop.h"
 
-#include "rt/periodic_loop.h"
+#include <cmath>
+
 #include "rt/section.h"
 
 namespace appliance {
+namespace {
+
+constexpr std::uint32_t kGenlockRecordEvery = 10;  // triggers
+
+}  // namespace
 
 void TriggerLoop::run(const std::stop_token& stop) noexcept {
   const rt::ScopedRtSection rt_section;
@@ -12,7 +18,9 @@ void TriggerLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     const auto tick = loop.wait();
     missed_.store(loop.schedule().missed(), std::memory_order_relaxed);
-    if (tick) pulse(tick->deadline);
+    if (!tick) continue;
+    pulse(tick->deadline);
+    steer(loop.schedule());
   }
 }
 
@@ -32,6 +40,32 @@ void TriggerLoop::pulse(rt::Timestamp deadline) noexcept {
   }
   rt::sleepUntil(edge->before + timing_.pulse_width);
   if (!line_.setActive(false)) failed_.store(failed() + 1, std::memory_order_relaxed);
+}
+
+void TriggerLoop::steer(rt::PeriodicSchedule& schedule) noexcept {
+  if (const auto input = genlock_board_.input.tryTake()) genlock_.take(*input);
+  schedule.nudge(genlock_.step(schedule.deadline()));
+  genlock_board_.status.store(genlock_.status());
+  if (trace_ != nullptr) recordGenlock();
+}
+
+void TriggerLoop::recordGenlock() noexcept {
+  const GenlockStatus& status = genlock_.status();
+  const bool changed = status.state != recorded_.state || status.reason != recorded_.reason ||
+                       status.hold_over != recorded_.hold_over;
+  if (!changed && ++since_recorded_ < kGenlockRecordEvery) return;
+  recorded_ = status;
+  since_recorded_ = 0;
+  trace_->record(
+      GenlockRecord{.trigger = trigger_ + 1,
+                    .state = status.state,
+                    .reason = status.reason,
+                    .hold_over = status.hold_over,
+                    .vblanks_per_trigger = status.vblanks_per_trigger,
+                    .phase_error = status.phase_error,
+                    .lead = status.lead,
+                    .vblank_period = rt::Nanoseconds(std::llround(status.vblank_period_ns)),
+                    .unlocks = status.unlocks});
 }
 
 }  // namespace appliance

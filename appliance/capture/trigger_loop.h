@@ -5,9 +5,12 @@
 #include <stop_token>
 
 #include "appliance/capture/edge_board.h"
+#include "appliance/capture/genlock.h"
+#include "appliance/capture/genlock_board.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/trigger_line.h"
 #include "rt/clock.h"
+#include "rt/periodic_loop.h"
 
 namespace appliance {
 
@@ -15,9 +18,12 @@ namespace appliance {
 struct TriggerTiming {
   rt::Nanoseconds period;
   rt::Nanoseconds pulse_width;  ///< active this long; less than half a period
+  bool genlock = false;         ///< in phase with the screen where the rates allow it
+  rt::Nanoseconds genlock_margin{};
 };
 
-/// Fires the cameras: one pulse per period on an absolute grid, never paused.
+/// Fires the cameras: one pulse per period on an absolute grid, never paused. The genlock moves
+/// the grid's coming deadlines, a little per pulse.
 ///
 /// A pulse more than a fifth of a period late is given up, for two pulses too close to each
 /// other would make cameras ignore the second one.
@@ -26,8 +32,15 @@ struct TriggerTiming {
 /// RT       run() sleeps, drives the line, posts the edge; nothing else.
 class TriggerLoop {
  public:
-  TriggerLoop(TriggerTiming timing, hal::TriggerLine& line, EdgeBoard& edges, TraceProducer* trace)
-      : timing_(timing), line_(line), edges_(edges), trace_(trace) {}
+  TriggerLoop(TriggerTiming timing, hal::TriggerLine& line, EdgeBoard& edges,
+              GenlockBoard& genlock_board, TraceProducer* trace)
+      : timing_(timing),
+        line_(line),
+        edges_(edges),
+        genlock_board_(genlock_board),
+        genlock_(
+            {.enabled = timing.genlock, .period = timing.period, .margin = timing.genlock_margin}),
+        trace_(trace) {}
 
   /// Until stopped. The line is inactive when it returns.
   void run(const std::stop_token& stop) noexcept;
@@ -39,10 +52,16 @@ class TriggerLoop {
 
  private:
   void pulse(rt::Timestamp deadline) noexcept;
+  void steer(rt::PeriodicSchedule& schedule) noexcept;
+  void recordGenlock() noexcept;
 
   const TriggerTiming timing_;
   hal::TriggerLine& line_;
   EdgeBoard& edges_;
+  GenlockBoard& genlock_board_;
+  Genlock genlock_;
+  GenlockStatus recorded_;  // the last one in the trace
+  std::uint32_t since_recorded_ = 0;
   TraceProducer* trace_;  // none: not traced
   std::uint64_t trigger_ = 0;
   std::atomic<std::uint64_t> missed_{0};

@@ -124,6 +124,8 @@ void readTrigger(Section section, Config::Trigger& trigger) {
   section.flag("active_low", trigger.active_low);
   section.text("loopback_line", trigger.loopback_line);
   section.flag("loopback_active_low", trigger.loopback_active_low);
+  section.flag("genlock", trigger.genlock);
+  section.number("genlock_margin_us", trigger.genlock_margin_us, {0, 20000, "us"});
   section.end();
 }
 

@@ -46,6 +46,8 @@ struct Config {
     bool active_low = false;
     std::string loopback_line;  ///< empty: the trigger's edges are not measured
     bool loopback_active_low = false;
+    bool genlock = true;              ///< in phase with the screen where the rates allow it
+    double genlock_margin_us = 1500;  ///< frame_ready to the latest start of its warp
     bool operator==(const Trigger&) const = default;
   };
 

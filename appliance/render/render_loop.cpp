@@ -13,6 +13,7 @@ namespace {
 
 // A frame may wait in its socket for three periods: one of them at most is the pictures'.
 constexpr double kShareOfPictures = 0.6;
+constexpr std::size_t kReadyKnownAfter = 8;  // frames
 
 hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
                           hal::PixelFormat format) {
@@ -59,11 +60,12 @@ void RenderLoop::turn() noexcept {
   wanted.target_point_end = rt::now();
   parts_.board.shown_camera.store(wanted.shot.camera_shown, std::memory_order_relaxed);
 
-  if (!onScreen(wanted) && show(wanted, wake)) {
+  if (!onScreen(wanted) && mayDraw(wanted, wake) && show(wanted, wake)) {
     on_screen_ = wanted;
     first_command_ = {};
   }
   recordFlips();
+  talkToGenlock();
   counters_.shot = wanted.shot;
   status_.publish(counters_);
   mode_.store(wanted.shot.mode, std::memory_order_relaxed);
@@ -85,6 +87,14 @@ bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
          wanted.shot.trigger == on_screen_.shot.trigger &&
          wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
          wanted.line.view() == on_screen_.line.view() && wanted.target == on_screen_.target;
+}
+
+/// A live picture's vblank is not taken away from it by one that shows the same moment again: what
+/// that one would tell, the next one tells with the same vblank.
+bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) const noexcept {
+  const Shot& shot = wanted.shot;
+  if (!locked_ || shot.mode != Mode::kLive || shot.trigger != on_screen_.shot.trigger) return true;
+  return locked_->redrawFits(now, parts_.board.edges.edge(shot.trigger));
 }
 
 bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
@@ -115,13 +125,19 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
   }
 
   const auto drawn = parts_.display.render(plan ? &*plan : nullptr, wanted.line);
+  const rt::Timestamp drawn_at = rt::now();
+  const bool new_live = shot.mode == Mode::kLive && shot.trigger != on_screen_.shot.trigger;
+  if (drawn && frame && new_live) {
+    noteReady(frame->frame);
+    if (locked_) rt::sleepUntil(locked_->earliestCommit(parts_.board.edges.edge(shot.trigger)));
+  }
   const auto commit = drawn ? parts_.display.commit(record.picture_id)
                             : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));
   if (!commit) {
     ++counters_.skipped;
     return false;
   }
-  allowance_.spend(wake, *commit);
+  allowance_.spend(wake, drawn_at);
   ++counters_.pictures;
   if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
   picture_id_ = record.picture_id;
@@ -134,6 +150,13 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     parts_.observer->onPicture({.record = record, .plan = plan ? &*plan : nullptr});
   }
   return true;
+}
+
+void RenderLoop::noteReady(const StoredFrame& frame) noexcept {
+  const rt::Timestamp edge = parts_.board.edges.edge(frame.trigger);
+  // The frame is readable microseconds after its last packet.
+  if (edge != rt::Timestamp{} && frame.last_packet > edge)
+    ready_delay_.add(frame.last_packet - edge);
 }
 
 void RenderLoop::countShown(rt::Timestamp commit) noexcept {
@@ -152,6 +175,17 @@ void RenderLoop::recordFlips() noexcept {
     parts_.trace->record(FlipRecord{
         .picture_id = flip->picture_id, .page_flip = flip->page_flip, .vblank = flip->vblank});
   }
+}
+
+void RenderLoop::talkToGenlock() noexcept {
+  const auto timing = parts_.display.timing();
+  const bool known = ready_delay_.count() >= kReadyKnownAfter;
+  parts_.board.genlock.input.publish(
+      {.timing = timing, .ready_delay = known ? ready_delay_.high() : rt::Nanoseconds{0}});
+  const auto lock = parts_.board.genlock.status.tryLoad();
+  if (!lock) return;  // being written: as it was
+  locked_.reset();
+  if (timing && lock->state == GenlockState::kLocked) locked_.emplace(*timing, *lock);
 }
 
 }  // namespace appliance

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -14,9 +15,11 @@
 #include "appliance/geometry/target_track.h"
 #include "appliance/render/command_queue.h"
 #include "appliance/render/history_views.h"
+#include "appliance/render/locked_vblanks.h"
 #include "appliance/render/render_allowance.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
+#include "rt/high_quantile.h"
 #include "rt/latest_value.h"
 
 namespace appliance {
@@ -95,8 +98,11 @@ class RenderLoop {
   void takeCommands() noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
   [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
+  [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) const noexcept;
+  void noteReady(const StoredFrame& frame) noexcept;
   void countShown(rt::Timestamp commit) noexcept;
   void recordFlips() noexcept;
+  void talkToGenlock() noexcept;
 
   const RenderParts parts_;
   const RenderParameters parameters_;
@@ -114,6 +120,8 @@ class RenderLoop {
 
   Wanted on_screen_;
   RenderAllowance allowance_;
+  rt::HighQuantile ready_delay_;         // of live frames
+  std::optional<LockedVblanks> locked_;  // none: triggers are not locked to the screen
   std::uint64_t picture_id_ = 0;
   RenderStatus counters_;
   rt::Timestamp second_begin_;  // of the second that is being counted

@@ -70,6 +70,19 @@ void visitFields(R& record, Visitor&& visit) {
   visit("vblank", record.vblank);
 }
 
+template <IsRecord<GenlockRecord> R, class Visitor>
+void visitFields(R& record, Visitor&& visit) {
+  visit("trigger", record.trigger);
+  visit("state", record.state);
+  visit("reason", record.reason);
+  visit("hold_over", record.hold_over);
+  visit("vblanks_per_trigger", record.vblanks_per_trigger);
+  visit("phase_error_ns", record.phase_error);
+  visit("lead_ns", record.lead);
+  visit("vblank_period_ns", record.vblank_period);
+  visit("unlocks", record.unlocks);
+}
+
 template <IsRecord<TracedThread> R, class Visitor>
 void visitFields(R& record, Visitor&& visit) {
   visit("name", record.name);

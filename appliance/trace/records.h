@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "appliance/capture/genlock_status.h"
 #include "appliance/director/shot.h"
 #include "hal/camera.h"
 #include "rt/clock.h"
@@ -73,9 +74,22 @@ struct FlipRecord {
   std::uint64_t vblank = 0;
 };
 
+/// What the genlock did: at every change of its state and now and then, by the trigger loop.
+struct GenlockRecord {
+  std::uint64_t trigger = 0;  ///< the first one that was fired in this state
+  GenlockState state = GenlockState::kOff;
+  GenlockReason reason = GenlockReason::kNone;
+  bool hold_over = false;
+  std::uint32_t vblanks_per_trigger = 0;
+  rt::Nanoseconds phase_error{};    ///< of that trigger, before it was corrected
+  rt::Nanoseconds lead{};           ///< from trigger to the vblank it is meant for
+  rt::Nanoseconds vblank_period{};  ///< 0: not known
+  std::uint64_t unlocks = 0;        ///< so far
+};
+
 /// What crosses from a real-time thread to the trace writer.
-using TraceRecord =
-    std::variant<TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord, LoopbackRecord>;
+using TraceRecord = std::variant<TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord,
+                                 LoopbackRecord, GenlockRecord>;
 static_assert(std::is_trivially_copyable_v<TraceRecord>, "records cross threads by copy");
 
 /// What a named thread asked for and what the kernel granted.

@@ -21,6 +21,10 @@ using nlohmann::json;
 constexpr std::array<std::string_view, 4> kModeNames = {"live", "delayed", "frozen", "sweep"};
 constexpr std::array<std::string_view, 4> kStatusNames = {"complete", "incomplete", "wrong_size",
                                                           "aborted"};
+constexpr std::array<std::string_view, 4> kGenlockStates = {"off", "free_running", "acquiring",
+                                                            "locked"};
+constexpr std::array<std::string_view, 5> kGenlockReasons = {"none", "no_vblanks", "ratio",
+                                                             "no_frames", "phase_lost"};
 
 template <class Record>
 constexpr const char* kKind = nullptr;
@@ -36,6 +40,8 @@ template <>
 constexpr const char* kKind<FlipRecord> = "flip";
 template <>
 constexpr const char* kKind<LoopbackRecord> = "loopback";
+template <>
+constexpr const char* kKind<GenlockRecord> = "genlock";
 
 /// Appends the fields of the frequent records; they hold no text of the world, so nothing is
 /// escaped.
@@ -47,6 +53,9 @@ class LineAppender {
   void operator()(const char* name, bool value) { key(name).append(value ? "true" : "false"); }
   void operator()(const char* name, Mode mode) { word(name, nameOf(mode)); }
   void operator()(const char* name, hal::FrameStatus status) { word(name, nameOf(status)); }
+  void operator()(const char* name, GenlockState state) { word(name, nameOf(state)); }
+  void operator()(const char* name, GenlockReason reason) { word(name, nameOf(reason)); }
+  void operator()(const char* name, rt::Nanoseconds time) { number(name, time.count()); }
   void operator()(const char* name, std::unsigned_integral auto value) { number(name, value); }
 
  private:
@@ -134,6 +143,18 @@ struct JsonReader {
     to = rt::fromNs(t_ns);
     return true;
   }
+  static bool take(const json& from, rt::Nanoseconds& to) {
+    std::int64_t time_ns = 0;
+    if (!take(from, time_ns)) return false;
+    to = rt::Nanoseconds(time_ns);
+    return true;
+  }
+  static bool take(const json& from, GenlockState& to) {
+    return takeName(from, kGenlockStates, to);
+  }
+  static bool take(const json& from, GenlockReason& to) {
+    return takeName(from, kGenlockReasons, to);
+  }
   static bool take(const json& from, Mode& to) { return takeName(from, kModeNames, to); }
   static bool take(const json& from, hal::FrameStatus& to) {
     return takeName(from, kStatusNames, to);
@@ -196,6 +217,7 @@ std::string takeLine(const std::string& line, bool first, Trace& trace) {
   if (kind == kKind<PictureRecord>) return readInto(object, trace.pictures.emplace_back());
   if (kind == kKind<FlipRecord>) return readInto(object, trace.flips.emplace_back());
   if (kind == kKind<LoopbackRecord>) return readInto(object, trace.loopbacks.emplace_back());
+  if (kind == kKind<GenlockRecord>) return readInto(object, trace.genlocks.emplace_back());
   if (kind == "summary") return readInto(object, trace.summary.emplace());
   return "unknown record '" + kind + "'";
 }
@@ -208,6 +230,14 @@ std::string_view nameOf(Mode mode) {
 
 std::string_view nameOf(hal::FrameStatus status) {
   return kStatusNames[static_cast<std::size_t>(status)];
+}
+
+std::string_view nameOf(GenlockState state) {
+  return kGenlockStates[static_cast<std::size_t>(state)];
+}
+
+std::string_view nameOf(GenlockReason reason) {
+  return kGenlockReasons[static_cast<std::size_t>(reason)];
 }
 
 std::string toLine(const RunRecord& run) {

@@ -24,6 +24,7 @@ struct Trace {
   std::vector<PictureRecord> pictures;
   std::vector<FlipRecord> flips;
   std::vector<LoopbackRecord> loopbacks;
+  std::vector<GenlockRecord> genlocks;
   std::optional<SummaryRecord> summary;  ///< nothing: the daemon did not come to its end
 };
 
@@ -42,5 +43,7 @@ void appendLine(std::string& text, const TraceRecord& record);
 
 [[nodiscard]] std::string_view nameOf(Mode mode);
 [[nodiscard]] std::string_view nameOf(hal::FrameStatus status);
+[[nodiscard]] std::string_view nameOf(GenlockState state);
+[[nodiscard]] std::string_view nameOf(GenlockReason reason);
 
 }  // namespace appliance

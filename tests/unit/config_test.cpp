@@ -75,6 +75,8 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "trigger.active_low=true",
                                           "trigger.loopback_line=TRIGGER_BACK",
                                           "trigger.loopback_active_low=true",
+                                          "trigger.genlock=false",
+                                          "trigger.genlock_margin_us=900",
                                           "history.sets=200",
                                           "history.in_flight=10",
                                           "history.reserve=5",

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "appliance/capture/genlock.h"
+#include "rt/latest_value.h"
+#include "rt/shared_value.h"
+
+namespace appliance {
+
+/// Where the render thread and the trigger loop tell each other what the genlock needs and did.
+///
+/// Threads  input: the render thread publishes, the trigger loop takes. status: the trigger loop
+///          stores, any thread below it in priority loads.
+struct GenlockBoard {
+  rt::LatestValue<GenlockInput> input;
+  rt::SharedValue<GenlockStatus> status;
+};
+
+}  // namespace appliance
