@@ -59,7 +59,7 @@ struct DisplayMode {
 struct RenderInstants {
   rt::Timestamp warp_submit;  ///< drawing starts: demosaic and upload come next
   rt::Timestamp upload_end;   ///< demosaiced and uploaded
-  rt::Timestamp warp_end;     ///< all pixels written
+  rt::Timestamp warp_end;     ///< all pixels written, or left to a GPU whose fence the screen heeds
   bool imported = false;      ///< the frame was read in its slot, not uploaded
 };
 
@@ -78,6 +78,9 @@ enum class ScreenState : std::uint8_t {
 struct ScreenStatus {
   ScreenState state = ScreenState::kShowing;
   std::array<char, 128> message{};  ///< why nothing or less is shown, and what to do; may be empty
+  /// Another number than before: the screen does not show the last picture any more, and its mode
+  /// may be another. Draw anew.
+  std::uint64_t changes = 0;
 };
 
 /// A screen that shows one warped picture at a time.
@@ -91,6 +94,7 @@ class Display {
  public:
   virtual ~Display() = default;
 
+  /// The size that render() draws; between calls it may change with the screen.
   [[nodiscard]] virtual DisplayMode mode() const = 0;
   /// What draws, for the report: GL_RENDERER.
   [[nodiscard]] virtual std::string_view renderer() const = 0;
@@ -110,6 +114,10 @@ class Display {
 
   /// None while vblanks are not known: no screen, or too few flips so far.
   [[nodiscard]] virtual std::optional<DisplayTiming> timing() const = 0;
+
+  /// When the display is to be called next, whether there is a picture or not, so that one that
+  /// was committed early is not held up. None: whenever.
+  [[nodiscard]] virtual std::optional<rt::Timestamp> nextCall() const = 0;
 
   [[nodiscard]] virtual ScreenStatus screen() const = 0;
 

@@ -1,6 +1,7 @@
 #include "ui-kms/egl_context.h"
 
 #include <cstdlib>
+#include <cstring>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -52,6 +53,9 @@ std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
   made->renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   made->software_ = made->renderer_.find("llvmpipe") != std::string::npos ||
                     made->renderer_.find("softpipe") != std::string::npos;
+  const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+  made->fences_ =
+      extensions != nullptr && std::strstr(extensions, "EGL_ANDROID_native_fence_sync") != nullptr;
   return made;
 }
 
@@ -65,6 +69,23 @@ bool EglContext::bind() {
   if (eglGetCurrentContext() == context_) return true;
   eglBindAPI(EGL_OPENGL_ES_API);  // the choice of API is per thread
   return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE;
+}
+
+rt::UniqueFd EglContext::tryFence() const {
+  if (!fences_) return {};
+  const auto create =
+      reinterpret_cast<PFNEGLCREATESYNCKHRPROC>(eglGetProcAddress("eglCreateSyncKHR"));
+  const auto destroy =
+      reinterpret_cast<PFNEGLDESTROYSYNCKHRPROC>(eglGetProcAddress("eglDestroySyncKHR"));
+  const auto duplicate = reinterpret_cast<PFNEGLDUPNATIVEFENCEFDANDROIDPROC>(
+      eglGetProcAddress("eglDupNativeFenceFDANDROID"));
+  if (create == nullptr || destroy == nullptr || duplicate == nullptr) return {};
+  EGLSyncKHR sync = create(display_, EGL_SYNC_NATIVE_FENCE_ANDROID, nullptr);
+  if (sync == EGL_NO_SYNC_KHR) return {};
+  glFlush();  // only then has the fence a descriptor
+  rt::UniqueFd fence(duplicate(display_, sync));
+  destroy(display_, sync);
+  return fence;
 }
 
 void EglContext::release() {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "rt/unique_fd.h"
+
 struct gbm_device;
 
 namespace ui {
@@ -32,6 +34,10 @@ class EglContext {
   /// The calling thread lets go of the context.
   void release();
 
+  /// A fence behind everything drawn so far, for the kernel; none where the driver has no such
+  /// thing (EGL_ANDROID_native_fence_sync): glFinish() then.
+  [[nodiscard]] rt::UniqueFd tryFence() const;
+
   /// EGLDisplay.
   [[nodiscard]] void* display() const { return display_; }
   /// GL_RENDERER.
@@ -51,6 +57,7 @@ class EglContext {
   bool surfaceless_;
   std::string renderer_;
   bool software_ = false;
+  bool fences_ = false;
 };
 
 }  // namespace ui

@@ -91,6 +91,17 @@ RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px) {
   return target;
 }
 
+rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba) {
+  if (rgba.size() != std::size_t{4} * target.width_px * target.height_px) {
+    return std::unexpected(rt::Error{rt::Errc::kInvalidConfig, 0, "read: size of the buffer"});
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px),
+               GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  return {};
+}
+
 std::expected<GlProgram, std::string> makeProgram(const char* pass, const std::string& vertex,
                                                   const std::string& fragment) {
   const auto vertex_shader = compile(pass, GL_VERTEX_SHADER, vertex);

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <expected>
+#include <span>
 #include <string>
 #include <utility>
 
 #include <GLES3/gl3.h>
+
+#include "rt/result.h"
 
 namespace ui {
 
@@ -61,6 +65,8 @@ struct RenderTarget {
   std::uint32_t height_px = 0;
 };
 [[nodiscard]] RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px);
+/// RGBA bytes, top row first. Errors: kInvalidConfig, @p rgba has another size.
+[[nodiscard]] rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba);
 
 /// Compiles and links; the error names the pass and carries the driver's message.
 [[nodiscard]] std::expected<GlProgram, std::string> makeProgram(const char* pass,

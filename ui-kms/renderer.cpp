@@ -67,7 +67,7 @@ void Renderer::warmUp(const RendererConfig& config) {
 }
 
 hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::WarpPlan* plan,
-                                   const hal::StatusLine& status) {
+                                   const hal::StatusLine& status, rt::UniqueFd* fence) {
   hal::RenderInstants instants;
   instants.warp_submit = rt::now();
   const bool drawable = plan != nullptr && plan->source.pixels != nullptr;
@@ -80,7 +80,8 @@ hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::WarpPl
   glClear(GL_COLOR_BUFFER_BIT);
   if (drawable) warp_->draw(*plan, source.colour);
   if (status_) status_->draw(status);
-  glFinish();
+  if (fence != nullptr) *fence = context_->tryFence();
+  if (fence == nullptr || !fence->valid()) glFinish();
   instants.warp_end = rt::now();
   return instants;
 }

@@ -49,9 +49,10 @@ class Renderer {
   [[nodiscard]] std::expected<void, std::string> resize(std::uint32_t width_px,
                                                         std::uint32_t height_px);
 
-  /// Draws all of @p target; the pixels are written when it returns.
+  /// Draws all of @p target; the pixels are written when it returns. With @p fence, and a driver
+  /// that has fences, they are written when that one signals; without, it stays empty.
   hal::RenderInstants draw(const RenderTarget& target, const hal::WarpPlan* plan,
-                           const hal::StatusLine& status);
+                           const hal::StatusLine& status, rt::UniqueFd* fence = nullptr);
 
  private:
   explicit Renderer(std::unique_ptr<EglContext> context) : context_(std::move(context)) {}

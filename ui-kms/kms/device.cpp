@@ -9,7 +9,6 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-
 #include <xf86drm.h>
 #include <xf86drmMode.h>
 

@@ -2,9 +2,8 @@
 
 #include <cerrno>
 
-#include <sys/mman.h>
-
 #include <drm_fourcc.h>
+#include <sys/mman.h>
 #include <xf86drm.h>
 #include <xf86drmMode.h>
 
@@ -16,15 +15,14 @@ std::expected<Framebuffer, int> Framebuffer::create(int fd, const FramebufferLay
   for (std::size_t i = 0; i < modifiers.size(); ++i) {
     if (layout.handles[i] != 0) modifiers[i] = layout.modifier;
   }
-  const int failed =
-      layout.has_modifier
-          ? drmModeAddFB2WithModifiers(fd, layout.width_px, layout.height_px, layout.format,
-                                       layout.handles.data(), layout.pitches.data(),
-                                       layout.offsets.data(), modifiers.data(), &id,
-                                       DRM_MODE_FB_MODIFIERS)
-          : drmModeAddFB2(fd, layout.width_px, layout.height_px, layout.format,
-                          layout.handles.data(), layout.pitches.data(), layout.offsets.data(), &id,
-                          0);
+  const int failed = layout.has_modifier
+                         ? drmModeAddFB2WithModifiers(fd, layout.width_px, layout.height_px,
+                                                      layout.format, layout.handles.data(),
+                                                      layout.pitches.data(), layout.offsets.data(),
+                                                      modifiers.data(), &id, DRM_MODE_FB_MODIFIERS)
+                         : drmModeAddFB2(fd, layout.width_px, layout.height_px, layout.format,
+                                         layout.handles.data(), layout.pitches.data(),
+                                         layout.offsets.data(), &id, 0);
   if (failed != 0) return std::unexpected(errno);
   return Framebuffer(fd, id);
 }

@@ -31,8 +31,7 @@ class Framebuffer {
   [[nodiscard]] static std::expected<Framebuffer, int> create(int fd,
                                                               const FramebufferLayout& layout);
   ~Framebuffer();
-  Framebuffer(Framebuffer&& other) noexcept
-      : fd_(other.fd_), id_(std::exchange(other.id_, 0)) {}
+  Framebuffer(Framebuffer&& other) noexcept : fd_(other.fd_), id_(std::exchange(other.id_, 0)) {}
   Framebuffer& operator=(Framebuffer&& other) noexcept {
     std::swap(fd_, other.fd_);
     std::swap(id_, other.id_);

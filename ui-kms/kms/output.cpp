@@ -107,8 +107,8 @@ void Output::clear(AtomicRequest& request) const {
   }
 }
 
-void Output::addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::uint32_t mode_blob,
-                     std::uint32_t framebuffer) const {
+void Output::addMode(AtomicRequest& request, const drmModeModeInfo& mode,
+                     std::uint32_t mode_blob) const {
   const Properties& connector = connector_.properties;
   request.set(connector_.id, connector.id("CRTC_ID"), crtc_);
   request.set(connector_.id, connector.id("link-status"), DRM_MODE_LINK_STATUS_GOOD);
@@ -121,7 +121,6 @@ void Output::addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::u
   request.set(crtc_, crtc.id("VRR_ENABLED"), 0);
   const Properties& plane = plane_properties_;
   request.set(plane_, plane.id("CRTC_ID"), crtc_);
-  request.set(plane_, framebuffer_property_, framebuffer);
   request.set(plane_, plane.id("SRC_X"), 0);
   request.set(plane_, plane.id("SRC_Y"), 0);
   request.set(plane_, plane.id("SRC_W"), std::uint64_t{mode.hdisplay} << 16);  // 16.16 fixed
@@ -132,6 +131,11 @@ void Output::addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::u
   request.set(plane_, plane.id("CRTC_H"), mode.vdisplay);
   request.set(plane_, plane.id("rotation"), DRM_MODE_ROTATE_0);
   request.set(plane_, plane.id("alpha"), 0xffff);
+}
+
+void Output::addPicture(AtomicRequest& request, std::uint32_t framebuffer, int fence) const {
+  request.set(plane_, framebuffer_property_, framebuffer);
+  if (fence >= 0) request.set(plane_, fence_property_, static_cast<std::uint64_t>(fence));
 }
 
 void Output::addDesirable(AtomicRequest& request) const {
@@ -151,14 +155,15 @@ void Output::addDesirable(AtomicRequest& request) const {
 }
 
 AtomicRequest::Outcome Output::light(const drmModeModeInfo& mode, std::uint32_t framebuffer,
-                                     std::uint64_t serial) const {
+                                     int fence, std::uint64_t serial) const {
   const ModeBlob blob(fd_, mode);
   if (blob.id() == 0) return std::unexpected(EINVAL);
   AtomicRequest::Outcome tested;
   for (const bool desirable : {true, false}) {
     AtomicRequest request;
     clear(request);
-    addMode(request, mode, blob.id(), framebuffer);
+    addMode(request, mode, blob.id());
+    addPicture(request, framebuffer, fence);
     if (desirable) addDesirable(request);
     tested = request.test(fd_, /*modeset=*/true);
     if (tested) return request.submit(fd_, /*modeset=*/true, serial);
@@ -170,8 +175,7 @@ AtomicRequest::Outcome Output::light(const drmModeModeInfo& mode, std::uint32_t 
 AtomicRequest::Outcome Output::flip(std::uint32_t framebuffer, int fence,
                                     std::uint64_t serial) const {
   AtomicRequest request;
-  request.set(plane_, framebuffer_property_, framebuffer);
-  if (fence >= 0) request.set(plane_, fence_property_, static_cast<std::uint64_t>(fence));
+  addPicture(request, framebuffer, fence);
   return request.submit(fd_, /*modeset=*/false, serial);
 }
 

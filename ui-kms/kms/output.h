@@ -25,11 +25,11 @@ class Output {
 
   [[nodiscard]] const Connector& connector() const { return connector_; }
 
-  /// Sets @p mode and shows @p framebuffer, which has that mode's size; flips with @p serial.
+  /// Sets @p mode and shows @p framebuffer, which has that mode's size; otherwise as flip().
   /// Tested first. What is only desirable (content type, colour range, underscan) is left out where
   /// the driver refuses the whole with it. Undoes what another program left behind.
-  [[nodiscard]] AtomicRequest::Outcome light(const drmModeModeInfo& mode,
-                                             std::uint32_t framebuffer, std::uint64_t serial) const;
+  [[nodiscard]] AtomicRequest::Outcome light(const drmModeModeInfo& mode, std::uint32_t framebuffer,
+                                             int fence, std::uint64_t serial) const;
 
   /// Shows @p framebuffer from the next vblank on. @p fence: signals when its pixels are written;
   /// -1: they are. Never changes the mode.
@@ -41,13 +41,13 @@ class Output {
 
   /// Whether the driver tells vblanks; without, flips happen at once and carry no number.
   [[nodiscard]] bool hasVblanks() const;
-  [[nodiscard]] bool takesFences() const { return plane_properties_.id("IN_FENCE_FD") != 0; }
+  [[nodiscard]] bool takesFences() const { return fence_property_ != 0; }
 
  private:
   Output(int fd, Connector connector) : fd_(fd), connector_(std::move(connector)) {}
   void clear(AtomicRequest& request) const;
-  void addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::uint32_t mode_blob,
-               std::uint32_t framebuffer) const;
+  void addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::uint32_t mode_blob) const;
+  void addPicture(AtomicRequest& request, std::uint32_t framebuffer, int fence) const;
   void addDesirable(AtomicRequest& request) const;
 
   int fd_;

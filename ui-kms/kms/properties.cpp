@@ -23,8 +23,8 @@ Properties Properties::read(int fd, std::uint32_t object, std::uint32_t type) {
                       .choices = {},
                       .range = {}};
     if ((info->flags & DRM_MODE_PROP_ENUM) != 0) {
-      for (const auto& choice : std::span(info->enums, static_cast<std::size_t>(
-                                                           std::max(info->count_enums, 0)))) {
+      for (const auto& choice :
+           std::span(info->enums, static_cast<std::size_t>(std::max(info->count_enums, 0)))) {
         property.choices.emplace_back(choice.name, choice.value);
       }
     }

@@ -6,6 +6,8 @@ namespace ui::kms {
 
 void ScreenMachine::enter(State state) {
   if (state_ == State::kLost) return;
+  const bool lit = state == State::kLighting || state == State::kShowing;
+  if (takesPictures() && !lit) ++losses_;
   if (state == State::kLighting) ++changes_;
   if (state == State::kReleased || state == State::kLost) master_ = false;
   if (state != State::kShowing) pending_since_.reset();

@@ -78,6 +78,8 @@ class ScreenMachine {
   }
   /// Counts what makes the picture on the screen stale: every way into kLighting.
   [[nodiscard]] std::uint64_t changes() const { return changes_; }
+  /// Counts what ends everything that was committed: every way out of kLighting and kShowing.
+  [[nodiscard]] std::uint64_t losses() const { return losses_; }
 
  private:
   void enter(State state);
@@ -89,6 +91,7 @@ class ScreenMachine {
   rt::Nanoseconds backoff_ = kFirstBackoff;
   std::optional<rt::Timestamp> pending_since_;
   std::uint64_t changes_ = 0;
+  std::uint64_t losses_ = 0;
 };
 
 }  // namespace ui::kms

@@ -1,0 +1,281 @@
+#include "ui-kms/kms_display.h"
+
+#include <cstdio>
+#include <utility>
+
+#include <gbm.h>
+
+#include "ui-kms/kms/sync_file.h"
+
+namespace ui {
+namespace {
+
+// Drivers latch a commit up to the vblank itself or a few lines before; the kernel's worker that
+// writes the registers needs to run until then.
+constexpr rt::Nanoseconds kCommitMargin = std::chrono::microseconds(500);
+// How long after a predicted flip its event is there to be read.
+constexpr rt::Nanoseconds kEventDelay = std::chrono::microseconds(200);
+
+rt::Error contextElsewhere() {
+  return {rt::Errc::kDeviceLost, 0, "the GL context is bound to another thread"};
+}
+rt::Error noScreen() {
+  return {rt::Errc::kDeviceLost, 0, "no screen"};
+}
+rt::Error anotherMode() {
+  return {rt::Errc::kBusy, 0, "the screen's mode has just changed"};
+}
+
+}  // namespace
+
+void KmsDisplay::CloseGbm::operator()(gbm_device* gbm) const {
+  gbm_device_destroy(gbm);
+}
+
+std::expected<std::unique_ptr<KmsDisplay>, std::string> KmsDisplay::create(
+    const KmsConfig& config) {
+  if (config.queue_depth != 1 && config.queue_depth != 2) {
+    return std::unexpected("display.queue_depth = " + std::to_string(config.queue_depth) +
+                           ": give 1 or 2");
+  }
+  const auto wish = kms::parseModeWish(config.mode);
+  if (!wish) return std::unexpected("display.mode = " + wish.error());
+  auto screen =
+      kms::Screen::open({.device = config.device, .mode = *wish, .trigger_hz = config.trigger_hz});
+  if (!screen) return std::unexpected(screen.error());
+  std::unique_ptr<KmsDisplay> display(new KmsDisplay(config, std::move(*screen)));
+  auto made = display->makeRenderer();
+  if (made) made = display->makeBuffers();
+  if (!made) return std::unexpected(made.error());
+  display->detach();
+  return display;
+}
+
+KmsDisplay::KmsDisplay(const KmsConfig& config, std::unique_ptr<kms::Screen> screen)
+    : config_(config),
+      screen_(std::move(screen)),
+      queue_(config.queue_depth),
+      drawings_(queue_.buffers()),
+      pacer_(config.refresh_hz, kCommitMargin),
+      mode_{config.renderer.width_px, config.renderer.height_px, config.refresh_hz} {
+  followMode();
+}
+
+KmsDisplay::~KmsDisplay() {
+  // Where the render thread still holds the context, the objects end with it instead.
+  static_cast<void>(renderer_ && renderer_->context().bind());
+}
+
+/// On the card itself, so that GL can draw into what the screen shows; else wherever GL draws.
+std::expected<void, std::string> KmsDisplay::makeRenderer() {
+  RendererConfig wanted = config_.renderer;
+  wanted.width_px = mode_.width_px;
+  wanted.height_px = mode_.height_px;
+  if (config_.path != ScanoutPath::kCopied) {
+    gbm_.reset(gbm_create_device(screen_->device().fd()));
+    wanted.gbm = gbm_.get();
+  }
+  auto renderer = Renderer::create(wanted);
+  if (!renderer && wanted.gbm != nullptr && !config_.path) {
+    wanted.gbm = nullptr;
+    renderer = Renderer::create(wanted);
+  }
+  if (!renderer) return std::unexpected(renderer.error());
+  renderer_ = std::move(*renderer);
+  path_ = wanted.gbm != nullptr ? ScanoutPath::kDirect : ScanoutPath::kCopied;
+  return {};
+}
+
+std::expected<void, std::string> KmsDisplay::makeBuffers() {
+  const auto make = [this](ScanoutPath path) {
+    return ScanoutBuffers::create(screen_->device().fd(), gbm_.get(), renderer_->context(), path,
+                                  mode_.width_px, mode_.height_px, queue_.buffers());
+  };
+  buffers_.reset();
+  auto made = make(path_);
+  if (!made && path_ == ScanoutPath::kDirect && !config_.path) {
+    path_ = ScanoutPath::kCopied;
+    made = make(path_);
+  }
+  if (!made) return std::unexpected(screen_->device().path() + ": " + made.error());
+  buffers_ = std::move(*made);
+  return {};
+}
+
+/// What the screen has become since the last call.
+void KmsDisplay::followMode() {
+  if (screen_->losses() != losses_) {
+    losses_ = screen_->losses();
+    queue_.dropAll();
+  }
+  if (screen_->changes() == changes_) return;
+  changes_ = screen_->changes();
+  const drmModeModeInfo& mode = *screen_->mode();
+  mode_ = {mode.hdisplay, mode.vdisplay, kms::refreshHz(mode)};
+  pacer_.restart(mode_.refresh_hz);
+  vblanks_known_.reset();
+}
+
+void KmsDisplay::attend(rt::Timestamp now) {
+  events_.clear();
+  screen_->readFlips(events_);
+  for (const kms::FlipEvent& event : events_) onFlip(event);
+  screen_->attend(now);
+  followMode();
+  if (const auto due = queue_.due(); due && buffersFit()) {
+    static_cast<void>(submit(due->buffer, due->picture_id, now));
+    followMode();
+  }
+}
+
+void KmsDisplay::onFlip(const kms::FlipEvent& event) {
+  if (!vblanks_known_) vblanks_known_ = screen_->hasVblanks();
+  // The kernel's counter has 32 bits; where it goes back, or stands still, we go on by one.
+  const auto step = static_cast<std::int32_t>(event.sequence - sequence_);
+  const bool counted = *vblanks_known_ && step > 0;
+  vblank_ += counted ? static_cast<std::uint64_t>(step) : 1;
+  sequence_ = event.sequence;
+  const auto buffer = queue_.onFlip(event.serial, vblank_, event.at);
+  if (!buffer) return;
+  if (*vblanks_known_) pacer_.onVblank(vblank_, event.at);
+  Drawing& drawing = drawings_[*buffer];
+  if (!drawing.fence.valid()) return;
+  // Only now is known when the GPU was done.
+  if (const auto drawn = kms::signalledAt(drawing.fence.get())) {
+    drawing.instants.warp_end = *drawn;
+    pacer_.onPicture(drawing.instants);
+  }
+  drawing.fence = {};
+}
+
+bool KmsDisplay::buffersFit() const {
+  return buffers_ && buffers_->widthPx() == mode_.width_px &&
+         buffers_->heightPx() == mode_.height_px;
+}
+
+rt::Result<void> KmsDisplay::fitBuffers() {
+  if (buffersFit()) return {};
+  queue_.dropAll();
+  if (!renderer_->resize(mode_.width_px, mode_.height_px) || !makeBuffers()) {
+    return std::unexpected(rt::Error{rt::Errc::kNoMemory, 0, "render: buffers of the mode's size"});
+  }
+  return {};
+}
+
+std::string_view KmsDisplay::renderer() const {
+  return renderer_->context().renderer();
+}
+
+rt::Result<hal::RenderInstants> KmsDisplay::render(const hal::WarpPlan* plan,
+                                                   const hal::StatusLine& status) {
+  if (!renderer_->context().bind()) return std::unexpected(contextElsewhere());
+  const hal::DisplayMode planned = mode_;
+  attend(rt::now());
+  if (!screen_->takesPictures()) return std::unexpected(noScreen());
+  if (mode_.width_px != planned.width_px || mode_.height_px != planned.height_px) {
+    return std::unexpected(anotherMode());  // the plan is for the old one
+  }
+  if (const auto fit = fitBuffers(); !fit) return std::unexpected(fit.error());
+  const auto buffer = queue_.tryBeginDraw();
+  if (!buffer) return std::unexpected(buffer.error());
+  Drawing& drawing = drawings_[*buffer];
+  const bool fences = path_ == ScanoutPath::kDirect && screen_->takesFences();
+  drawing.fence = {};
+  drawing.instants =
+      renderer_->draw(buffers_->target(*buffer), plan, status, fences ? &drawing.fence : nullptr);
+  buffers_->finishDraw(*buffer);
+  if (path_ == ScanoutPath::kCopied) drawing.instants.warp_end = rt::now();
+  queue_.finishDraw(*buffer);
+  if (!drawing.fence.valid()) pacer_.onPicture(drawing.instants);
+  return drawing.instants;
+}
+
+rt::Result<rt::Timestamp> KmsDisplay::commit(std::uint64_t picture_id) {
+  attend(rt::now());
+  if (!screen_->takesPictures()) return std::unexpected(noScreen());
+  if (!buffersFit()) return std::unexpected(anotherMode());
+  const auto drawn = queue_.drawn();
+  if (!drawn) return std::unexpected(rt::Error{rt::Errc::kUnsupported, 0, "commit: nothing drawn"});
+  if (!queue_.takesCommit()) {
+    return std::unexpected(
+        rt::Error{rt::Errc::kBusy, 0, "commit: the last one has not flipped yet"});
+  }
+  const rt::Timestamp now = rt::now();
+  if (queue_.pending()) {
+    queue_.queue(*drawn, picture_id);
+    return now;
+  }
+  if (const auto shown = submit(*drawn, picture_id, now); !shown) {
+    followMode();
+    return std::unexpected(shown.error());
+  }
+  return now;
+}
+
+rt::Result<void> KmsDisplay::submit(std::uint32_t buffer, std::uint64_t picture_id,
+                                    rt::Timestamp now) {
+  const auto shown =
+      screen_->show(buffers_->framebuffer(buffer), drawings_[buffer].fence.get(), serial_ + 1, now);
+  if (shown) queue_.submitted(buffer, picture_id, ++serial_);
+  return shown;
+}
+
+std::optional<hal::PageFlip> KmsDisplay::tryPopFlip() {
+  attend(rt::now());
+  return queue_.tryPopFlip();
+}
+
+std::optional<hal::DisplayTiming> KmsDisplay::timing() const {
+  if (!screen_->takesPictures()) return std::nullopt;
+  return pacer_.timing();
+}
+
+std::optional<rt::Timestamp> KmsDisplay::nextCall() const {
+  if (!queue_.queued()) return std::nullopt;
+  const rt::Timestamp now = rt::now();
+  const auto known = timing();
+  if (!known) return now + std::chrono::milliseconds(1);
+  return known->vblankAt(known->firstVblankAfter(now - kEventDelay)) + kEventDelay;
+}
+
+hal::ScreenStatus KmsDisplay::screen() const {
+  hal::ScreenStatus status;
+  using State = kms::ScreenMachine::State;
+  if (screen_->state() == State::kReleased) {
+    status.state = hal::ScreenState::kReleased;
+  } else if (!screen_->takesPictures()) {
+    status.state = hal::ScreenState::kNoScreen;
+  }
+  status.changes = screen_->changes();
+  std::snprintf(status.message.data(), status.message.size(), "%s", screen_->message().c_str());
+  return status;
+}
+
+void KmsDisplay::releaseScreen() {
+  screen_->release();
+  followMode();
+}
+
+void KmsDisplay::takeScreen() {
+  screen_->take(rt::now());
+}
+
+rt::Result<void> KmsDisplay::readPicture(std::span<std::byte> rgba) {
+  if (!renderer_->context().bind()) return std::unexpected(contextElsewhere());
+  const auto buffer = queue_.committed();
+  if (!buffer) {
+    return std::unexpected(rt::Error{rt::Errc::kUnsupported, 0, "read: nothing committed"});
+  }
+  return readTarget(buffers_->target(*buffer), rgba);
+}
+
+std::optional<hal::PageFlip> KmsDisplay::committedFlip() const {
+  return queue_.committedFlip();
+}
+
+std::string KmsDisplay::description() const {
+  return screen_->description() +
+         (path_ == ScanoutPath::kDirect ? ", drawn in place" : ", drawn elsewhere and copied");
+}
+
+}  // namespace ui
