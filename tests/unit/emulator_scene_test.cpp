@@ -26,9 +26,8 @@ TEST(StampCode, ComesBackFromItsCells) {
   const StampCells cells = encodeStamp(kStamp);
   const StampLayout layout{100, 50};
   const auto read = decodeStamp(layout, [&](double x, double y) {
-    const auto column =
-        static_cast<std::size_t>(x - layout.left_px - StampLayout::kGridLeftPx) / 16;
-    const auto row = static_cast<std::size_t>(y - layout.top_px - StampLayout::kGridTopPx) / 16;
+    const auto column = static_cast<std::size_t>(x - layout.left_px - layout.gridLeft()) / 16;
+    const auto row = static_cast<std::size_t>(y - layout.top_px - layout.gridTop()) / 16;
     return cells[row * StampLayout::kColumns + column] ? 200.0 : 20.0;
   });
   EXPECT_EQ(read, kStamp);
@@ -40,8 +39,8 @@ TEST(StampCode, IsNotReadFromAFlatOrDamagedPicture) {
   StampCells cells = encodeStamp({3, 77});
   cells[40] = !cells[40];
   EXPECT_FALSE(decodeStamp(layout, [&](double x, double y) {
-    const int column = static_cast<int>(x - StampLayout::kGridLeftPx) / 16;
-    const int row = static_cast<int>(y - StampLayout::kGridTopPx) / 16;
+    const int column = static_cast<int>(x - layout.gridLeft()) / 16;
+    const int row = static_cast<int>(y - layout.gridTop()) / 16;
     return cells[static_cast<std::size_t>(row * StampLayout::kColumns + column)] ? 1.0 : 0.0;
   }));
 }
@@ -51,33 +50,35 @@ TEST(StampLayout, StaysInsideAWidescreenCropOfTheMiddle) {
   EXPECT_GE(layout.top_px, 152 + 16);
   EXPECT_EQ(layout.left_px % 2, 0);
   EXPECT_EQ(layout.top_px % 2, 0);
-  EXPECT_EQ(layout.left_px + StampLayout::kCardWidthPx / 2, 640);
+  EXPECT_EQ(layout.left_px + layout.cardWidth() / 2, 640);
 }
 
 TEST(StampScene, PaintsEachCamerasTriggerIntoItsPixels) {
-  constexpr SizePx kSize{640, 480};
-  auto scene = StampScene::make(2, kSize);
-  ASSERT_TRUE(scene) << scene.error();
-  const auto layout = StampLayout::of(640, 480);
-  for (std::uint32_t camera = 0; camera < 2; ++camera) {
-    for (std::uint64_t trigger : {1u, 2u, 3u, 4u, 5u, 123456u}) {
-      const auto pixels = joined(scene->expose(camera, trigger, trigger % kFrameHistory));
-      ASSERT_EQ(pixels.size(), 640u * 480u);
-      const auto stamp = decodeStamp(layout, [&](double x, double y) {
-        return static_cast<double>(
-            pixels[static_cast<std::size_t>(y) * 640 + static_cast<std::size_t>(x)]);
-      });
-      ASSERT_TRUE(stamp);
-      EXPECT_EQ(stamp->camera, camera);
-      EXPECT_EQ(stamp->trigger, trigger);
+  for (const SizePx size : {SizePx{640, 480}, SizePx{320, 256}, SizePx{224, 160}}) {
+    auto scene = StampScene::make(2, size);
+    ASSERT_TRUE(scene) << scene.error();
+    const auto layout =
+        StampLayout::of(static_cast<int>(size.width), static_cast<int>(size.height));
+    for (std::uint32_t camera = 0; camera < 2; ++camera) {
+      for (std::uint64_t trigger : {1u, 2u, 3u, 4u, 5u, 123456u}) {
+        const auto pixels = joined(scene->expose(camera, trigger, trigger % kFrameHistory));
+        ASSERT_EQ(pixels.size(), std::size_t{size.width} * size.height);
+        const auto stamp = decodeStamp(layout, [&](double x, double y) {
+          return static_cast<double>(
+              pixels[static_cast<std::size_t>(y) * size.width + static_cast<std::size_t>(x)]);
+        });
+        ASSERT_TRUE(stamp);
+        EXPECT_EQ(stamp->camera, camera);
+        EXPECT_EQ(stamp->trigger, trigger);
+      }
     }
   }
 }
 
 TEST(StampScene, RefusesASizeThatCannotHoldTheCard) {
-  const auto scene = StampScene::make(1, {320, 240});
+  const auto scene = StampScene::make(1, {208, 160});
   ASSERT_FALSE(scene);
-  EXPECT_NE(scene.error().find("448x320"), std::string::npos) << scene.error();
+  EXPECT_NE(scene.error().find("224x160"), std::string::npos) << scene.error();
 }
 
 TEST(ArcRig, LooksAtTheTargetFromTheArc) {

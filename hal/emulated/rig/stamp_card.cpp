@@ -12,47 +12,64 @@ constexpr std::uint8_t kWhite = 235;  // linear light, near full scale
 constexpr std::uint8_t kBlack = 4;
 constexpr char kFirstGlyph = ' ';
 constexpr char kLastGlyph = 'Z';
-constexpr int kGlyphWidthPx = 18;
-constexpr int kGlyphHeightPx = 26;
-constexpr int kTextTopPx = 8;
 constexpr int kTextColumns = 22;  // "CAM 07  TRIGGER 001234"
 constexpr int kTriggerColumn = 16;
-constexpr int kTextLeftPx = (StampLayout::kCardWidthPx - kTextColumns * kGlyphWidthPx) / 2;
 constexpr unsigned kShownTriggers = 1'000'000;
 
-std::vector<std::uint8_t> drawGlyph(char character) {
-  cv::Mat glyph(kGlyphHeightPx, kGlyphWidthPx, CV_8UC1, cv::Scalar(kWhite));
+// The text's measures follow the cells.
+int glyphWidth(const StampLayout& layout) {
+  return layout.cell_px * 9 / 8;
+}
+int glyphHeight(const StampLayout& layout) {
+  return layout.cell_px * 13 / 8;
+}
+int textTop(const StampLayout& layout) {
+  return layout.cell_px / 2;
+}
+int textLeft(const StampLayout& layout) {
+  return (layout.cardWidth() - kTextColumns * glyphWidth(layout)) / 2;
+}
+
+std::vector<std::uint8_t> drawGlyph(const StampLayout& layout, char character) {
+  const int width_px = glyphWidth(layout);
+  const int height_px = glyphHeight(layout);
+  cv::Mat glyph(height_px, width_px, CV_8UC1, cv::Scalar(kWhite));
   const std::string text(1, character);
   constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
-  constexpr double kScale = 0.7;
+  const double scale = 0.7 / StampLayout::kFullCellPx * layout.cell_px;
+  const int stroke_px = layout.cell_px / 8;
   int baseline = 0;
-  const cv::Size size = cv::getTextSize(text, kFont, kScale, 2, &baseline);
-  const cv::Point at((kGlyphWidthPx - size.width) / 2, (kGlyphHeightPx + size.height) / 2);
-  cv::putText(glyph, text, at, kFont, kScale, cv::Scalar(kBlack), 2, cv::LINE_AA);
+  const cv::Size size = cv::getTextSize(text, kFont, scale, stroke_px, &baseline);
+  const cv::Point at((width_px - size.width) / 2, (height_px + size.height) / 2);
+  cv::putText(glyph, text, at, kFont, scale, cv::Scalar(kBlack), stroke_px, cv::LINE_AA);
   return {glyph.datastart, glyph.dataend};
 }
 
 }  // namespace
 
-StampCard::StampCard() {
-  for (char c = kFirstGlyph; c <= kLastGlyph; ++c) glyphs_.push_back(drawGlyph(c));
+StampCard::StampCard(const StampLayout& layout) : layout_(layout) {
+  for (char c = kFirstGlyph; c <= kLastGlyph; ++c) glyphs_.push_back(drawGlyph(layout, c));
 }
 
 void StampCard::paintText(std::uint8_t* card_origin, std::size_t stride_bytes, int column,
                           const char* text) const {
-  std::uint8_t* to = card_origin + kTextTopPx * stride_bytes + kTextLeftPx + column * kGlyphWidthPx;
-  for (; *text != '\0'; ++text, to += kGlyphWidthPx) {
+  const auto width = static_cast<std::size_t>(glyphWidth(layout_));
+  const auto height = static_cast<std::size_t>(glyphHeight(layout_));
+  std::uint8_t* to = card_origin + static_cast<std::size_t>(textTop(layout_)) * stride_bytes +
+                     textLeft(layout_) + column * glyphWidth(layout_);
+  for (; *text != '\0'; ++text, to += width) {
     const auto& glyph = glyphs_[static_cast<std::size_t>(*text - kFirstGlyph)];
-    for (std::size_t row = 0; row < kGlyphHeightPx; ++row) {
-      std::memcpy(to + row * stride_bytes, &glyph[row * kGlyphWidthPx], kGlyphWidthPx);
+    for (std::size_t row = 0; row < height; ++row) {
+      std::memcpy(to + row * stride_bytes, &glyph[row * width], width);
     }
   }
 }
 
 void StampCard::paintFrame(std::uint8_t* card_origin, std::size_t stride_bytes,
                            std::uint8_t camera) const {
-  for (std::size_t row = 0; row < StampLayout::kCardHeightPx; ++row) {
-    std::memset(card_origin + row * stride_bytes, kWhite, StampLayout::kCardWidthPx);
+  const auto width = static_cast<std::size_t>(layout_.cardWidth());
+  for (std::size_t row = 0; row < static_cast<std::size_t>(layout_.cardHeight()); ++row) {
+    std::memset(card_origin + row * stride_bytes, kWhite, width);
   }
   char text[32];
   std::snprintf(text, sizeof text, "CAM %02u  TRIGGER", unsigned{camera} + 1);
@@ -67,17 +84,17 @@ void StampCard::paintTrigger(std::uint8_t* card_origin, std::size_t stride_bytes
 
   const StampCells cells = encodeStamp(stamp);
   std::uint8_t* grid =
-      card_origin + StampLayout::kGridTopPx * stride_bytes + StampLayout::kGridLeftPx;
-  constexpr std::size_t kRowBytes = std::size_t{StampLayout::kColumns} * StampLayout::kCellPx;
+      card_origin + static_cast<std::size_t>(layout_.gridTop()) * stride_bytes + layout_.gridLeft();
+  const auto cell = static_cast<std::size_t>(layout_.cell_px);
+  const std::size_t row_bytes = std::size_t{StampLayout::kColumns} * cell;
   for (std::size_t row = 0; row < StampLayout::kRows; ++row) {
-    std::uint8_t* first = grid + row * StampLayout::kCellPx * stride_bytes;
+    std::uint8_t* first = grid + row * cell * stride_bytes;
     for (std::size_t column = 0; column < StampLayout::kColumns; ++column) {
       const bool white = cells[row * StampLayout::kColumns + column];
-      std::memset(first + column * StampLayout::kCellPx, white ? kWhite : kBlack,
-                  StampLayout::kCellPx);
+      std::memset(first + column * cell, white ? kWhite : kBlack, cell);
     }
-    for (std::size_t line = 1; line < StampLayout::kCellPx; ++line) {
-      std::memcpy(first + line * stride_bytes, first, kRowBytes);
+    for (std::size_t line = 1; line < cell; ++line) {
+      std::memcpy(first + line * stride_bytes, first, row_bytes);
     }
   }
 }

@@ -12,7 +12,7 @@ namespace emulator {
 /// All glyphs are drawn once; a paint copies rows.
 class StampCard {
  public:
-  StampCard();
+  explicit StampCard(const StampLayout& layout);
 
   /// Paints the parts of the card that never change. @p card_origin is the card's top left
   /// pixel in a picture of @p stride_bytes per row.
@@ -24,6 +24,7 @@ class StampCard {
   void paintText(std::uint8_t* card_origin, std::size_t stride_bytes, int column,
                  const char* text) const;
 
+  StampLayout layout_;
   std::vector<std::vector<std::uint8_t>> glyphs_;  // by character, from ' ' to 'Z'
 };
 

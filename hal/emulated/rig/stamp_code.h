@@ -16,34 +16,41 @@ struct Stamp {
   friend bool operator==(const Stamp&, const Stamp&) = default;
 };
 
-/// Where the card lies in a sensor's picture, in whole pixels; even, so that the Bayer
-/// pattern keeps the cells grey.
+/// Where the card lies in a sensor's picture and how large its cells are, in whole pixels; even,
+/// so that the Bayer pattern keeps the cells grey.
 struct StampLayout {
   static constexpr int kColumns = 24;
   static constexpr int kRows = 3;
-  static constexpr int kCellPx = 16;
-  static constexpr int kCardWidthPx = 416;
-  static constexpr int kCardHeightPx = 96;
-  static constexpr int kGridLeftPx = (kCardWidthPx - kColumns * kCellPx) / 2;
-  static constexpr int kGridTopPx = 40;  ///< below the text
-  static constexpr int kMinWidthPx = kCardWidthPx + 32;
-  static constexpr int kMinHeightPx = 320;
+  static constexpr int kFullCellPx = 16;
+  static constexpr int kHalfCellPx = 8;  ///< in pictures that cannot hold the full card
+  static constexpr int kMinWidthPx = 224;
+  static constexpr int kMinHeightPx = 160;
 
   int left_px = 0;
   int top_px = 0;
+  int cell_px = kFullCellPx;
+
+  [[nodiscard]] constexpr int cardWidth() const { return (kColumns + 2) * cell_px; }
+  [[nodiscard]] constexpr int cardHeight() const { return (kRows + 3) * cell_px; }
+  [[nodiscard]] constexpr int gridLeft() const { return cell_px; }
+  [[nodiscard]] constexpr int gridTop() const { return cell_px * 5 / 2; }  ///< below the text
 
   /// Centred, in the upper part: inside a 16:9 crop of the middle, above the athlete's head.
   [[nodiscard]] static constexpr StampLayout of(int width_px, int height_px) {
+    const bool full = width_px >= 2 * kMinWidthPx && height_px >= 2 * kMinHeightPx;
+    StampLayout layout{.cell_px = full ? kFullCellPx : kHalfCellPx};
     const int cropped = height_px > width_px * 9 / 16 ? (height_px - width_px * 9 / 16) / 2 : 0;
-    return {(width_px - kCardWidthPx) / 2 & ~1, (cropped + 24) & ~1};
+    layout.left_px = (width_px - layout.cardWidth()) / 2 & ~1;
+    layout.top_px = (cropped + layout.cell_px * 3 / 2) & ~1;
+    return layout;
   }
 
   /// The middle of a cell, integer coordinates at pixel centres.
   [[nodiscard]] constexpr double cellX(int column) const {
-    return left_px + kGridLeftPx + column * kCellPx + (kCellPx - 1) * 0.5;
+    return left_px + gridLeft() + column * cell_px + (cell_px - 1) * 0.5;
   }
   [[nodiscard]] constexpr double cellY(int row) const {
-    return top_px + kGridTopPx + row * kCellPx + (kCellPx - 1) * 0.5;
+    return top_px + gridTop() + row * cell_px + (cell_px - 1) * 0.5;
   }
 };
 

@@ -9,6 +9,14 @@
 
 namespace emulator {
 
+namespace {
+
+StampLayout layoutOf(SizePx size) {
+  return StampLayout::of(static_cast<int>(size.width), static_cast<int>(size.height));
+}
+
+}  // namespace
+
 std::expected<StampScene, std::string> StampScene::make(std::uint32_t cameras, SizePx size) {
   constexpr std::uint32_t kMinWidth = StampLayout::kMinWidthPx;
   constexpr std::uint32_t kMinHeight = StampLayout::kMinHeightPx;
@@ -26,7 +34,7 @@ std::expected<StampScene, std::string> StampScene::make(std::uint32_t cameras, S
 }
 
 std::size_t StampScene::bandBytes(SizePx size) {
-  return std::size_t{StampLayout::kCardHeightPx} * size.width;
+  return static_cast<std::size_t>(layoutOf(size).cardHeight()) * size.width;
 }
 
 std::size_t StampScene::viewBytes(SizePx size) {
@@ -36,7 +44,8 @@ std::size_t StampScene::viewBytes(SizePx size) {
 StampScene::StampScene(RigModel rig, SizePx size, rt::LockedArena pictures)
     : rig_(std::move(rig)),
       size_(size),
-      layout_(StampLayout::of(static_cast<int>(size.width), static_cast<int>(size.height))),
+      layout_(layoutOf(size)),
+      card_(layout_),
       pictures_(std::move(pictures)),
       views_(rig_.cameras.size()) {
   const std::span<std::byte> bytes = pictures_.bytes();

@@ -39,6 +39,7 @@ class StampScene final : public Scene {
   };
 
   StampScene(RigModel rig, SizePx size, rt::LockedArena pictures);
+  /// The rows that the card lies in.
   [[nodiscard]] static std::size_t bandBytes(SizePx size);
   [[nodiscard]] static std::size_t viewBytes(SizePx size);
   void draw(std::size_t camera);
