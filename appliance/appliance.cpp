@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "appliance/capture/genlock_text.h"
 #include "appliance/capture/liveness.h"
 #include "appliance/trigger_wiring.h"
 #include "hal/backends.h"
@@ -136,7 +137,7 @@ std::expected<std::unique_ptr<Appliance>, std::string> Appliance::start(const Co
                                                                         hal::Display& display,
                                                                         PictureObserver* observer) {
   std::unique_ptr<Appliance> appliance(new Appliance(config, rig));
-  auto done = appliance->makeHistory();
+  auto done = appliance->makeHistory(display);
   if (done) done = appliance->openDevices();
   if (done) done = appliance->openTrace();
   if (done) {
@@ -147,7 +148,7 @@ std::expected<std::unique_ptr<Appliance>, std::string> Appliance::start(const Co
   return appliance;
 }
 
-std::expected<void, std::string> Appliance::makeHistory() {
+std::expected<void, std::string> Appliance::makeHistory(const hal::Display& display) {
   HistoryLayout layout{.frame_bytes = {},
                        .sets = config_.history.sets,
                        .in_flight = config_.history.in_flight,
@@ -168,9 +169,14 @@ std::expected<void, std::string> Appliance::makeHistory() {
                   fitted->sets / config_.trigger.rate_hz, layout.sets);
     degraded_.emplace_back(line);
   }
-  auto history = FrameHistory::create(*fitted);
+  // Shared memory has its price (small pages, mostly): only for a renderer that reads it in place.
+  std::string upload_reason(display.uploadReason());
+  auto history = FrameHistory::create(
+      *fitted, upload_reason.empty() ? HistorySharing::kShared : HistorySharing::kPrivate);
   if (!history) return std::unexpected(history.error());
   history_ = std::move(*history);
+  if (upload_reason.empty()) upload_reason = history_->notShared();
+  source_path_ = upload_reason.empty() ? "dma-buf" : "upload: " + upload_reason;
   // The rest of the process after the arena: mlockall first would fault it in page by page.
   if (!config_.realtime.lock_memory) return {};
   const rt::MemoryLock lock = rt::lockMemory();
@@ -385,11 +391,14 @@ Status Appliance::status() const {
                 .target_m = target_m_,
                 .shown_hz = render.shown_hz,
                 .triggers = board_.edges.newest(),
+                .genlock = board_.genlock.status.load(),
                 .degraded = degraded_,
-                .renderer = renderer_};
+                .renderer = renderer_,
+                .source_path = source_path_};
   if (panel_loop_ && panel_loop_->lost()) {
     status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");
   }
+  status.genlock_text = genlockText(status.genlock, config_.trigger.rate_hz);
   for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
     const CollectorCounts counts = collectors_[i]->counts();
     status.cameras.push_back({.name = rig_.cameras[i].name,
@@ -422,6 +431,7 @@ RunRecord Appliance::runRecord(const hal::Display& display) const {
           .display_height_px = mode.height_px,
           .refresh_hz = mode.refresh_hz,
           .renderer = renderer_,
+          .source_path = source_path_,
           .history_sets = history_->sets(),
           .memory_bytes = memory.bytes,
           .memory_locked = memory.locked,

@@ -59,7 +59,7 @@ class Appliance final : public ControlSink, public StatusSource {
  private:
   Appliance(const Config& config, const Rig& rig);
 
-  [[nodiscard]] std::expected<void, std::string> makeHistory();
+  [[nodiscard]] std::expected<void, std::string> makeHistory(const hal::Display& display);
   [[nodiscard]] std::expected<void, std::string> openDevices();
   void openPanel();
   void openCameras();
@@ -80,6 +80,7 @@ class Appliance final : public ControlSink, public StatusSource {
   std::vector<std::string> degraded_;  // what is less than configured, a line each
 
   std::string renderer_;
+  std::string source_path_;  // how frames reach the renderer
   std::array<double, 3> target_m_;
   TargetTrack target_;
   CaptureBoard board_;

@@ -16,6 +16,7 @@
 #include "appliance/config/config.h"
 #include "appliance/control/control_server.h"
 #include "appliance/geometry/rig_file.h"
+#include "appliance/genlock_watch.h"
 #include "appliance/log.h"
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
@@ -89,6 +90,7 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
   constexpr rt::Nanoseconds kTick = std::chrono::milliseconds(100);
   auto control = openControl(config, running);
   CameraWatch watch;
+  GenlockWatch genlock_watch;
   sd_notify(0, "READY=1");
   while (!stop.requested()) {
     if (control) {
@@ -100,7 +102,9 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
     } else {
       stop.waitFor(kTick);
     }
-    for (const std::string& line : watch.look(running.status(), rt::now())) logWarning(line);
+    const Status status = running.status();
+    for (const std::string& line : watch.look(status, rt::now())) logWarning(line);
+    if (const auto line = genlock_watch.look(status)) logInfo(*line);
     sd_notify(0, "WATCHDOG=1");
   }
   sd_notify(0, "STOPPING=1");
@@ -138,7 +142,7 @@ std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
   logInfo(motionBlurLine(config, site.rig));
   for (const std::string& line : (*running)->status().degraded) logWarning(line);
   logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
-          std::string((*display)->renderer()));
+          std::string((*display)->renderer()) + ", frames by " + (*running)->status().source_path);
 
   serve(**running, config.control, stop);
 

@@ -11,6 +11,25 @@ std::string_view nameOf(CameraState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+namespace {
+
+nlohmann::ordered_json genlockObject(const Status& status) {
+  const GenlockStatus& genlock = status.genlock;
+  const auto us = [](rt::Nanoseconds time) { return static_cast<double>(time.count()) / 1e3; };
+  return {{"state", nameOf(genlock.state)},
+          {"reason", nameOf(genlock.reason)},
+          {"text", status.genlock_text},
+          {"hold_over", genlock.hold_over},
+          {"vblanks_per_trigger", genlock.vblanks_per_trigger},
+          {"phase_error_us", us(genlock.phase_error)},
+          {"phase_error_rms_us", genlock.phase_error_rms_ns / 1e3},
+          {"lead_ms", us(genlock.lead) / 1e3},
+          {"unlocks", genlock.unlocks},
+          {"last_unlock", nameOf(genlock.last_unlock)}};
+}
+
+}  // namespace
+
 std::string toJson(const Status& status) {
   nlohmann::ordered_json object = {
       {"mode", nameOf(status.mode)},
@@ -24,8 +43,10 @@ std::string toJson(const Status& status) {
       {"frames_lost", status.frames_lost},
       {"frames_incomplete", status.frames_incomplete},
       {"cameras", nlohmann::ordered_json::array()},
+      {"genlock", genlockObject(status)},
       {"degraded", status.degraded},
       {"renderer", status.renderer},
+      {"source_path", status.source_path},
   };
   for (const CameraStatus& camera : status.cameras) {
     object["cameras"].push_back({{"name", camera.name},

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "appliance/capture/genlock_status.h"
 #include "appliance/director/command.h"
 #include "appliance/director/shot.h"
 
@@ -38,8 +39,11 @@ struct Status {
   std::uint64_t frames_lost = 0;
   std::uint64_t frames_incomplete = 0;
   std::vector<CameraStatus> cameras;
+  GenlockStatus genlock;
+  std::string genlock_text;  ///< the same in one line
   std::vector<std::string> degraded;  ///< one line per thing that is less than configured
   std::string renderer;
+  std::string source_path;  ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
 };
 
 [[nodiscard]] std::string_view nameOf(CameraState state);

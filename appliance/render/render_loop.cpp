@@ -20,7 +20,8 @@ hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
   return {.pixels = frame.pixels,
           .width_px = camera.width_px,
           .height_px = camera.height_px,
-          .format = format};
+          .format = format,
+          .dma_buf = frame.dma_buf};
 }
 
 }  // namespace
@@ -141,6 +142,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
   ++counters_.pictures;
   if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
   picture_id_ = record.picture_id;
+  record.imported = drawn->imported;
   record.warp_submit = drawn->warp_submit;
   record.upload_end = drawn->upload_end;
   record.warp_end = drawn->warp_end;

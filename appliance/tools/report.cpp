@@ -162,9 +162,9 @@ double distinctSetsPerSecond(const std::vector<const PictureRecord*>& shown) {
 /// All values that the pictures and frames give, before they become distributions.
 struct Values {
   std::vector<double> edge_to_ready, last_packet_to_commit, target_point, homographies,
-      demosaic_upload, warp, commit_to_flip, edge_to_flip, button_to_commit, lateness_us,
-      edge_delay_us;
+      demosaic_upload, warp, commit_to_flip, button_to_commit, lateness_us, edge_delay_us;
   std::array<std::vector<double>, 4> wake_to_commit, edge_to_commit;
+  std::vector<FlippedTrigger> flipped;
 };
 
 void addNewFrame(const PictureRecord& picture, const Index& index, const WireIndex* wire,
@@ -172,8 +172,9 @@ void addNewFrame(const PictureRecord& picture, const Index& index, const WireInd
   const rt::Timestamp edge = index.triggerEdge(picture.trigger);
   append(values.edge_to_commit[static_cast<std::size_t>(picture.mode)], edge, picture.commit);
   if (picture.mode != Mode::kLive) return;
-  if (const auto flip = index.flips.find(picture.picture_id); flip != index.flips.end())
-    append(values.edge_to_flip, edge, flip->second);
+  if (const auto flip = index.flips.find(picture.picture_id);
+      flip != index.flips.end() && happened(edge) && happened(flip->second))
+    values.flipped.push_back({picture.trigger, ms(edge, flip->second)});
   const auto frame = index.complete.find({picture.camera_shown, picture.trigger});
   if (frame == index.complete.end()) return;
   if (wire == nullptr)
@@ -285,6 +286,7 @@ Report computeReport(const ReportInput& input) {
   report.shown_fps = distinctSetsPerSecond(shown);
   for (std::size_t i = 0; i < shown.size(); ++i) {
     ++report.by_mode[static_cast<std::size_t>(shown[i]->mode)].pictures;
+    if (shown[i]->imported) ++report.pictures_imported;
     if (i > 0 && playing(shown[i]->mode) && shown[i]->mode == shown[i - 1]->mode &&
         sameFrame(*shown[i - 1], *shown[i]))
       ++report.pictures_repeated;
@@ -300,6 +302,8 @@ Report computeReport(const ReportInput& input) {
     append(values.edge_to_ready, index.triggerEdge(frame->trigger), frame->frame_ready);
   addPictures(shown, index, wire ? &*wire : nullptr, values);
 
+  std::vector<double> edge_to_flip;
+  for (const FlippedTrigger& one : values.flipped) edge_to_flip.push_back(one.edge_to_flip_ms);
   report.trigger_lateness_us = distributionOf(std::move(values.lateness_us));
   report.trigger_edge_delay_us = distributionOf(std::move(values.edge_delay_us));
   report.button_to_commit_ms = distributionOf(std::move(values.button_to_commit));
@@ -311,8 +315,9 @@ Report computeReport(const ReportInput& input) {
       .demosaic_upload = distributionOf(std::move(values.demosaic_upload)),
       .warp = distributionOf(std::move(values.warp)),
       .commit_to_flip = distributionOf(std::move(values.commit_to_flip)),
-      .trigger_edge_to_page_flip = distributionOf(std::move(values.edge_to_flip)),
+      .trigger_edge_to_page_flip = distributionOf(std::move(edge_to_flip)),
   };
+  report.genlock = computeGenlockReport(trace, values.flipped);
   for (std::size_t mode = 0; mode < report.by_mode.size(); ++mode) {
     report.by_mode[mode].wake_to_commit_ms = distributionOf(std::move(values.wake_to_commit[mode]));
     report.by_mode[mode].trigger_edge_to_commit_ms =

@@ -8,6 +8,7 @@
 
 #include "appliance/tools/distribution.h"
 #include "appliance/tools/emulator_files.h"
+#include "appliance/tools/genlock_report.h"
 #include "appliance/trace/trace_file.h"
 
 namespace appliance {
@@ -63,6 +64,7 @@ struct Report {
   std::vector<std::string> invalid_reasons;
 
   std::uint64_t pictures = 0;
+  std::uint64_t pictures_imported = 0;  ///< their frames were read in their slots, not uploaded
   std::uint64_t pictures_repeated = 0;  ///< live or delayed, same frame as the one before
   double shown_fps = 0;  ///< distinct frame sets a second in the live and delayed phases
   Distribution trigger_lateness_us;
@@ -70,6 +72,7 @@ struct Report {
   Distribution button_to_commit_ms;
   StageTimes stages_ms;
   std::array<ModeTimes, 4> by_mode;  ///< in the order of Mode
+  GenlockReport genlock;
 
   bool last_packet_from_wire_log = false;  ///< else as the receiving thread saw it
   /// Frames whose trigger is not the one that the emulator answered; nothing without a wire log.

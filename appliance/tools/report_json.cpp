@@ -54,6 +54,34 @@ ordered_json modesOf(const Report& report) {
   return modes;
 }
 
+ordered_json toObject(const GenlockReport& genlock) {
+  ordered_json unlocks = ordered_json::array();
+  for (const auto& unlock : genlock.unlocks)
+    unlocks.push_back({{"trigger", unlock.trigger}, {"reason", nameOf(unlock.reason)}});
+  ordered_json histogram = ordered_json::object();
+  for (const auto& [vblanks, pictures] : genlock.trigger_to_flip_vblanks)
+    histogram[std::to_string(vblanks)] = pictures;
+  const bool any = !genlock.trigger_to_flip_vblanks.empty();
+  const auto end = [&](auto vblanks) {
+    return any ? ordered_json(vblanks()) : ordered_json(nullptr);
+  };
+  return {{"state", genlock.state ? ordered_json(nameOf(*genlock.state)) : ordered_json(nullptr)},
+          {"reason", nameOf(genlock.reason)},
+          {"vblanks_per_trigger", genlock.vblanks_per_trigger},
+          {"locked_after_s", orNull(genlock.locked_after_s)},
+          {"locked_share", genlock.locked_share},
+          {"phase_error_us", toObject(genlock.phase_error_us)},
+          {"lead_ms", toObject(genlock.lead_ms)},
+          {"unlocks", std::move(unlocks)},
+          {"trigger_to_flip_vblanks",
+           {{"histogram", std::move(histogram)},
+            {"min", end([&] { return genlock.trigger_to_flip_vblanks.begin()->first; })},
+            {"max", end([&] { return genlock.trigger_to_flip_vblanks.rbegin()->first; })}}},
+          {"trigger_edge_to_page_flip_ms",
+           {{"locked", toObject(genlock.edge_to_flip_locked_ms)},
+            {"free_running", toObject(genlock.edge_to_flip_free_ms)}}}};
+}
+
 ordered_json barsOf(const Report& report) {
   ordered_json bars = ordered_json::array();
   for (const Bar& bar : report.bars) {
@@ -97,12 +125,14 @@ std::string toJson(const Report& report) {
                    {"shown_fps", report.shown_fps},
                    {"pictures", report.pictures},
                    {"pictures_repeated", report.pictures_repeated},
+                   {"pictures_imported", report.pictures_imported},
                    {"trigger_lateness_us", toObject(report.trigger_lateness_us)},
                    {"trigger_edge_delay_us", toObject(report.trigger_edge_delay_us)},
                    {"button_to_commit_ms", toObject(report.button_to_commit_ms)},
                    {"stages_ms", toObject(report.stages_ms)},
                    {"last_packet_from", report.last_packet_from_wire_log ? "wire log" : "trace"},
                    {"by_mode", modesOf(report)},
+                   {"genlock", toObject(report.genlock)},
                    {"cpu_seconds",
                     {{"kagamid", report.cpu_seconds_kagamid},
                      {"emulator", orNull(report.cpu_seconds_emulator)}}},
@@ -111,6 +141,7 @@ std::string toJson(const Report& report) {
                    {"history_bytes", run.memory_bytes},
                    {"memory_locked", run.memory_locked},
                    {"renderer", run.renderer},
+                   {"source_path", run.source_path},
                    {"display",
                     {{"width", run.display_width_px},
                      {"height", run.display_height_px},

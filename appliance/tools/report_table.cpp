@@ -71,10 +71,32 @@ std::string stages(const Report& report) {
   text += row("wake to commit, delayed", delayed.wake_to_commit_ms, "delayed mode 5");
   text += row("commit_to_flip", t.commit_to_flip, "");
   text += row("trigger_edge_to_page_flip", t.trigger_edge_to_page_flip, "visible delay about 120");
+  if (report.genlock.edge_to_flip_locked_ms.count > 0) {
+    text += row("  while locked", report.genlock.edge_to_flip_locked_ms, "");
+    text += row("  while free-running", report.genlock.edge_to_flip_free_ms, "");
+  }
   text += row("button_to_commit", report.button_to_commit_ms, "");
   text += row("trigger lateness, us", report.trigger_lateness_us, "");
   text += row("trigger edge delay, us", report.trigger_edge_delay_us, "");
+  text += row("genlock phase error, us", report.genlock.phase_error_us, "");
   return text;
+}
+
+std::string genlock(const GenlockReport& report) {
+  if (!report.state) return {};
+  std::string text = line("\ngenlock: %s", std::string(nameOf(*report.state)).c_str());
+  if (report.reason != GenlockReason::kNone)
+    text += line(" (%s)", std::string(nameOf(report.reason)).c_str());
+  if (report.locked_after_s)
+    text += line(", locked after %.2f s for %.1f %% of the triggers", *report.locked_after_s,
+                 report.locked_share * 100);
+  for (const auto& [vblanks, pictures] : report.trigger_to_flip_vblanks)
+    text +=
+        line("\n  %" PRIu64 " pictures %" PRId64 " vblanks after their trigger", pictures, vblanks);
+  for (const auto& unlock : report.unlocks)
+    text += line("\n  lock lost at trigger %" PRIu64 ": %s", unlock.trigger,
+                 std::string(nameOf(unlock.reason)).c_str());
+  return text + "\n";
 }
 
 std::string bars(const Report& report) {
@@ -96,7 +118,7 @@ std::string bars(const Report& report) {
 }  // namespace
 
 std::string toTable(const Report& report) {
-  std::string text = heading(report) + stages(report) + bars(report);
+  std::string text = heading(report) + stages(report) + genlock(report.genlock) + bars(report);
   for (const std::string& reason : report.invalid_reasons) text += "\nNOT VALID: " + reason;
   for (const std::string& what : report.run.degraded) text += "\ndegraded: " + what;
   for (const TracedThread& thread : report.run.threads)

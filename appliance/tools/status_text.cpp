@@ -10,7 +10,7 @@ namespace appliance {
 std::expected<std::string, std::string> statusText(const std::string& json) {
   const auto status = nlohmann::json::parse(json, nullptr, false);
   try {
-    std::array<char, 512> head{};
+    std::array<char, 768> head{};
     const int view = status.at("view_wanted").get<int>();
     const int shown = status.at("view_shown").get<int>();
     const std::string substitute =
@@ -21,16 +21,24 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         "view     %d of %zu%s\n"
         "target   %.3f %.3f %.3f m\n"
         "shown    %.1f frame sets a second, by %s\n"
+        "source   %s\n"
         "frames   %llu triggers, %llu frames lost, %llu incomplete\n",
         status.at("mode").get<std::string>().c_str(), status.at("delay_ms").get<double>() / 1e3,
         status.at("history_ms").get<double>() / 1e3, view, status.at("cameras").size(),
         substitute.c_str(), status.at("target_m").at(0).get<double>(),
         status.at("target_m").at(1).get<double>(), status.at("target_m").at(2).get<double>(),
         status.at("shown_hz").get<double>(), status.at("renderer").get<std::string>().c_str(),
+        status.at("source_path").get<std::string>().c_str(),
         status.at("triggers").get<unsigned long long>(),
         status.at("frames_lost").get<unsigned long long>(),
         status.at("frames_incomplete").get<unsigned long long>());
     std::string text = head.data();
+    text += "genlock  " + status.at("genlock").at("text").get<std::string>();
+    const auto unlocks = status.at("genlock").at("unlocks").get<std::uint64_t>();
+    if (unlocks > 0)
+      text += "; lost " + std::to_string(unlocks) + " times, the last by " +
+              status.at("genlock").at("last_unlock").get<std::string>();
+    text += "\n";
     int number = 0;
     for (const auto& camera : status.at("cameras")) {
       ++number;

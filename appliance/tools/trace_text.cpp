@@ -62,14 +62,16 @@ std::string triggerText(const TriggerRecord& trigger) {
 
 std::string traceOverview(const Trace& trace) {
   const RunRecord& run = trace.run;
-  std::array<char, 400> text{};
+  std::array<char, 640> text{};
   (void)std::snprintf(text.data(), text.size(),
                       "%u cameras, %ux%u %s, %.6g Hz; picture %ux%u at %.6g Hz by %s\n"
+                      "frames to the renderer by %s\n"
                       "%zu triggers, %zu frames, %zu complete sets, %zu pictures, %zu page flips\n",
                       run.cameras, run.width_px, run.height_px, run.pixel_format.c_str(),
                       run.trigger_hz, run.display_width_px, run.display_height_px, run.refresh_hz,
-                      run.renderer.c_str(), trace.triggers.size(), trace.frames.size(),
-                      trace.sets.size(), trace.pictures.size(), trace.flips.size());
+                      run.renderer.c_str(), run.source_path.c_str(), trace.triggers.size(),
+                      trace.frames.size(), trace.sets.size(), trace.pictures.size(),
+                      trace.flips.size());
   std::string overview = text.data();
   for (const std::string& line : run.degraded) overview += "degraded: " + line + "\n";
   if (!trace.summary)

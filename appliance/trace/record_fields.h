@@ -51,6 +51,7 @@ void visitFields(R& record, Visitor&& visit) {
   visit("camera_shown", record.camera_shown);
   visit("trigger", record.trigger);
   visit("substitute", record.substitute);
+  visit("imported", record.imported);
   visit("wake_ns", record.wake);
   visit("target_point_begin_ns", record.target_point_begin);
   visit("target_point_end_ns", record.target_point_end);
@@ -103,6 +104,7 @@ void visitFields(R& record, Visitor&& visit) {
   visit("display_height_px", record.display_height_px);
   visit("refresh_hz", record.refresh_hz);
   visit("renderer", record.renderer);
+  visit("source_path", record.source_path);
   visit("history_sets", record.history_sets);
   visit("memory_bytes", record.memory_bytes);
   visit("memory_locked", record.memory_locked);

@@ -52,6 +52,7 @@ struct PictureRecord {
   std::uint64_t picture_id = 0;
   Mode mode = Mode::kLive;
   bool substitute = false;  ///< a neighbour of camera_wanted is shown instead
+  bool imported = false;    ///< the frame was read in its slot, not uploaded
   std::uint32_t camera_wanted = 0;
   std::uint32_t camera_shown = 0;
   std::uint64_t trigger = 0;  ///< 0: an empty picture
@@ -112,6 +113,7 @@ struct RunRecord {
   std::uint32_t display_height_px = 0;
   double refresh_hz = 0;
   std::string renderer;
+  std::string source_path;  ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
   std::uint32_t history_sets = 0;
   std::uint64_t memory_bytes = 0;  ///< the frame history, in-flight and reserve slots included
   bool memory_locked = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -197,7 +198,27 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
   std::set<std::tuple<int, std::int64_t>> sets;  // phase, trigger
   std::int64_t repeated = 0;
   int phase = 0;
-  std::vector<double> to_commit, to_flip, flips;
+  std::vector<double> to_commit, to_flip, flips, locked_flips, free_flips;
+  std::map<std::int64_t, json> genlock;  // by the first trigger it holds for
+  std::vector<double> phase_error_us, leads;
+  json unlocks = json::array();
+  for (const json& said : run.lines["genlock"]) {
+    const auto last = genlock.empty() ? 0 : genlock.rbegin()->second["unlocks"].get<int>();
+    if (said["unlocks"].get<int>() != last)
+      unlocks.push_back({{"trigger", said["trigger"]}, {"reason", said["reason"]}});
+    genlock[said["trigger"].get<std::int64_t>()] = said;
+    if (said["state"] != "locked") continue;
+    phase_error_us.push_back(std::abs(static_cast<double>(ns(said, "phase_error"))) * 1e-3);
+    leads.push_back(static_cast<double>(ns(said, "lead")) * 1e-6);
+  }
+  const auto genlockOf = [&](std::int64_t trigger) -> const json* {
+    const json* holds = nullptr;
+    for (const auto& [from, said] : genlock)
+      if (from <= trigger) holds = &said;
+    return holds;
+  };
+  std::map<std::string, int> vblank_counts;
+  std::set<int> vblanks_seen;
   std::map<std::string, std::vector<double>> edge_to_commit;
   std::map<std::string, Lines> of_mode;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
@@ -223,8 +244,23 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
     if (before != nullptr && (*before)["trigger"] == now["trigger"]) continue;
     if (const auto edge = run.edge.find(trigger); edge != run.edge.end()) {
       edge_to_commit[mode].push_back(static_cast<double>(ns(now, "commit") - edge->second) * 1e-6);
-      if (mode == "live" && flip != run.flip.end())
+      if (mode == "live" && flip != run.flip.end()) {
         to_flip.push_back(static_cast<double>(flip->second - edge->second) * 1e-6);
+        const json* said = genlockOf(trigger);
+        if (said == nullptr || (*said)["state"] != "locked") {
+          free_flips.push_back(to_flip.back());
+        } else {
+          locked_flips.push_back(to_flip.back());
+          const double vblank_ms = static_cast<double>(ns(*said, "vblank_period")) * 1e-6;
+          const double lead_ms = static_cast<double>(ns(*said, "lead")) * 1e-6;
+          const int meant =
+              static_cast<int>(std::ceil(spread(leads)["p50"].get<double>() / vblank_ms));
+          const int late =
+              static_cast<int>(std::floor((to_flip.back() - lead_ms) / vblank_ms + 0.5));
+          ++vblank_counts[std::to_string(meant + late)];
+          vblanks_seen.insert(meant + late);
+        }
+      }
     }
     const auto frame = received.find({now["camera_shown"].get<std::int64_t>(), trigger});
     if (mode != "live" || frame == received.end()) continue;
@@ -234,8 +270,35 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
         wire_log != nullptr ? sent->last_packet_ns : ns(frame->second, "last_packet");
     to_commit.push_back(static_cast<double>(ns(now, "commit") - last_ns) * 1e-6);
   }
+  std::int64_t locked_triggers = 0;
+  json locked_after = nullptr;
+  for (const auto& [trigger, edge_ns] : run.edge) {
+    const json* said = genlockOf(trigger);
+    if (said == nullptr || (*said)["state"] != "locked") continue;
+    if (locked_triggers++ == 0) locked_after = static_cast<double>(edge_ns - begin_ns) * 1e-9;
+  }
+  const json* last = genlockOf(std::numeric_limits<std::int64_t>::max());
+  out["genlock"] = {
+      {"state", last != nullptr ? (*last)["state"] : json(nullptr)},
+      {"reason", last != nullptr ? (*last)["reason"] : json("none")},
+      {"vblanks_per_trigger", last != nullptr ? (*last)["vblanks_per_trigger"] : json(0)},
+      {"locked_after_s", locked_after},
+      {"locked_share", run.edge.empty() ? 0.0
+                                        : static_cast<double>(locked_triggers) /
+                                              static_cast<double>(run.edge.size())},
+      {"phase_error_us", spread(phase_error_us)},
+      {"lead_ms", spread(leads)},
+      {"unlocks", unlocks},
+      {"trigger_to_flip_vblanks",
+       {{"histogram", vblank_counts},
+        {"min", vblanks_seen.empty() ? json(nullptr) : json(*vblanks_seen.begin())},
+        {"max", vblanks_seen.empty() ? json(nullptr) : json(*vblanks_seen.rbegin())}}},
+      {"trigger_edge_to_page_flip_ms",
+       {{"locked", spread(locked_flips)}, {"free_running", spread(free_flips)}}}};
   out["pictures"] = pictures.size();
   out["pictures_repeated"] = repeated;
+  out["pictures_imported"] = std::ranges::count_if(
+      pictures, [](const json& picture) { return picture["imported"] == true; });
   out["shown_fps"] = playing_s > 0 ? static_cast<double>(sets.size()) / playing_s : 0.0;
   auto lateness = between(run.lines["trigger"], "deadline", "trigger_edge_after");
   for (double& value : lateness) value *= 1e3;
@@ -260,7 +323,8 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
     out["by_mode"][mode] = {{"pictures", of_mode[mode].size()},
                             {"wake_to_commit_ms", spread(between(of_mode[mode], "wake", "commit"))},
                             {"trigger_edge_to_commit_ms", spread(edge_to_commit[mode])}};
-  for (const char* name : {"cameras", "trigger_hz", "renderer"}) out[name] = run.head[name];
+  for (const char* name : {"cameras", "trigger_hz", "renderer", "source_path"})
+    out[name] = run.head[name];
   out["width"] = run.head["width_px"];
   out["height"] = run.head["height_px"];
   out["cpu_seconds"]["kagamid"] = run.summary["cpu_seconds"];

@@ -43,6 +43,7 @@ class RunWriter {
          {"display_height_px", 6},
          {"refresh_hz", 80.0},
          {"renderer", "a test"},
+         {"source_path", "upload: a test"},
          {"history_sets", 300},
          {"memory_bytes", 4096},
          {"memory_locked", true},
@@ -60,6 +61,19 @@ class RunWriter {
   }
   void loopback(std::int64_t trigger, std::int64_t edge_ns) {
     add({{"record", "loopback"}, {"trigger", trigger}, {"edge_ns", edge_ns}});
+  }
+  void genlock(std::int64_t trigger, const char* state, const char* reason,
+               std::int64_t phase_error_ns, std::int64_t lead_ns, int unlocks) {
+    add({{"record", "genlock"},
+         {"trigger", trigger},
+         {"state", state},
+         {"reason", reason},
+         {"hold_over", false},
+         {"vblanks_per_trigger", 2},
+         {"phase_error_ns", phase_error_ns},
+         {"lead_ns", lead_ns},
+         {"vblank_period_ns", kPeriod_ns / 2},
+         {"unlocks", unlocks}});
   }
   void frame(int camera, std::int64_t trigger, std::int64_t frame_id, const char* status,
              std::int64_t first_ns, std::int64_t last_ns, std::int64_t ready_ns) {
@@ -87,6 +101,7 @@ class RunWriter {
          {"camera_shown", camera},
          {"trigger", trigger},
          {"substitute", false},
+         {"imported", id % 3 == 0},
          {"wake_ns", wake_ns},
          {"target_point_begin_ns", wake_ns + step_ns},
          {"target_point_end_ns", wake_ns + 2 * step_ns},
@@ -146,6 +161,11 @@ RunFiles eventfulRun() {
     const std::int64_t late_ns = upTo(200'000);
     const std::int64_t edge_ns = kStart_ns + t * kPeriod_ns + late_ns;
     run.trigger(t, edge_ns - late_ns, late_ns);
+    if (t == 1) run.genlock(t, "free_running", "no_vblanks", 0, 0, 0);
+    if (t == 10) run.genlock(t, "acquiring", "none", 3'000'000, 21'000'000, 0);
+    if (t % 10 == 0 && t >= 20 && t != 60)
+      run.genlock(t, "locked", "none", 20'000 - upTo(40'000), 25'000'000 + upTo(200'000), t > 60);
+    if (t == 60) run.genlock(t, "acquiring", "phase_lost", 700'000, 25'000'000, 1);
     // A lost edge, and one near no trigger: neither is a delay.
     if (t % 50 != 0) run.loopback(t % 50 == 1 ? 0 : t, edge_ns + 3000 + upTo(9000));
     for (int camera = 0; camera < kCameras; ++camera) {
@@ -202,6 +222,10 @@ TEST_P(RecomputedFigures, AreTheReportsFigures) {
     EXPECT_GT(stage["count"], 50) << name;
   EXPECT_EQ(report["trigger_edge_delay_us"]["count"], 192);
   EXPECT_GT(report["trigger_edge_delay_us"]["sd"], 1);
+  EXPECT_EQ(report["genlock"]["unlocks"].size(), 1);
+  EXPECT_GE(report["genlock"]["trigger_to_flip_vblanks"]["histogram"].size(), 2);
+  EXPECT_GT(report["genlock"]["trigger_edge_to_page_flip_ms"]["locked"]["count"], 30);
+  EXPECT_GT(report["genlock"]["trigger_edge_to_page_flip_ms"]["free_running"]["count"], 10);
   for (const auto& [name, mode] : report["by_mode"].items())
     EXPECT_GT(mode["pictures"], 10) << name;
   EXPECT_EQ(report["last_packet_from"], with_wire_log ? "wire log" : "trace");

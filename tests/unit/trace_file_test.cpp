@@ -51,6 +51,7 @@ RunRecord someRun() {
           .display_height_px = 1080,
           .refresh_hz = 80,
           .renderer = "a \"renderer\"",
+          .source_path = "upload: \"why\"",
           .history_sets = 300,
           .memory_bytes = std::numeric_limits<std::uint64_t>::max(),
           .memory_locked = true,
@@ -62,6 +63,7 @@ RunRecord someRun() {
 constexpr PictureRecord kPicture{.picture_id = 9,
                                  .mode = Mode::kSweep,
                                  .substitute = true,
+                                 .imported = true,
                                  .camera_wanted = 3,
                                  .camera_shown = 4,
                                  .trigger = 77,
@@ -108,6 +110,7 @@ TEST(TraceFile, ReadsBackWhatWasWritten) {
   const auto trace = read(text);
   ASSERT_TRUE(trace.has_value()) << trace.error();
   EXPECT_EQ(trace->run.renderer, "a \"renderer\"");
+  EXPECT_EQ(trace->run.source_path, "upload: \"why\"");
   EXPECT_EQ(trace->run.memory_bytes, std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(trace->run.trigger_hz, 39.9);
   ASSERT_EQ(trace->run.threads.size(), 2u);
@@ -139,7 +142,8 @@ TEST(TraceFile, EveryInstantOfARecordHasItsOwnName) {
   EXPECT_EQ(line["homographies_begin_ns"], 4);
   EXPECT_EQ(line["upload_end_ns"], 7);
   EXPECT_EQ(line["button_event_ns"], 10);
-  EXPECT_EQ(line.size(), 17u);
+  EXPECT_EQ(line["imported"], true);
+  EXPECT_EQ(line.size(), 18u);
 }
 
 TEST(TraceFile, ATraceThatWasCutOffIsReadableUpToTheCut) {
