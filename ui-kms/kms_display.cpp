@@ -1,5 +1,6 @@
 #include "ui-kms/kms_display.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -119,7 +120,7 @@ void KmsDisplay::followMode() {
 void KmsDisplay::attend(rt::Timestamp now) {
   events_.clear();
   screen_->readFlips(events_);
-  for (const kms::FlipEvent& event : events_) onFlip(event);
+  for (const kms::FlipEvent& event : events_) onFlip(event, now);
   screen_->attend(now);
   followMode();
   if (const auto due = queue_.due(); due && buffersFit()) {
@@ -128,17 +129,27 @@ void KmsDisplay::attend(rt::Timestamp now) {
   }
 }
 
-void KmsDisplay::onFlip(const kms::FlipEvent& event) {
-  if (!vblanks_known_) vblanks_known_ = screen_->hasVblanks();
-  // The kernel's counter has 32 bits; where it goes back, or stands still, we go on by one.
-  const auto step = static_cast<std::int32_t>(event.sequence - sequence_);
-  const bool counted = *vblanks_known_ && step > 0;
-  vblank_ += counted ? static_cast<std::uint64_t>(step) : 1;
-  sequence_ = event.sequence;
-  const auto buffer = queue_.onFlip(event.serial, vblank_, event.at);
+void KmsDisplay::onFlip(const kms::FlipEvent& event, rt::Timestamp now) {
+  const auto buffer = queue_.pendingBuffer(event.serial);
   if (!buffer) return;
-  if (*vblanks_known_) pacer_.onVblank(vblank_, event.at);
   Drawing& drawing = drawings_[*buffer];
+  kms::Vblank vblank{.number = vblank_.number + 1, .at = event.at};
+  if (!vblanks_known_) {
+    // The first flip of a mode comes with a number and a stamp from before the mode, or with none.
+    const auto last = screen_->lastVblank();
+    vblanks_known_ = last.has_value();
+    if (last) vblank = {.number = std::max(last->number, vblank.number), .at = last->at};
+  } else if (*vblanks_known_) {
+    // The kernel's counter has 32 bits here; should it go back, we go on by one.
+    const auto step =
+        static_cast<std::int32_t>(event.sequence - static_cast<std::uint32_t>(vblank_.number));
+    if (step > 0) vblank.number = vblank_.number + static_cast<std::uint64_t>(step);
+  }
+  const bool stamped = vblank.at > drawing.submit;
+  if (!stamped) vblank.at = now;
+  vblank_ = vblank;
+  queue_.onFlip(event.serial, vblank.number, vblank.at);
+  if (*vblanks_known_ && stamped) pacer_.onVblank(vblank.number, vblank.at);
   if (!drawing.fence.valid()) return;
   // Only now is known when the GPU was done.
   if (const auto drawn = kms::signalledAt(drawing.fence.get())) {
@@ -216,7 +227,9 @@ rt::Result<void> KmsDisplay::submit(std::uint32_t buffer, std::uint64_t picture_
                                     rt::Timestamp now) {
   const auto shown =
       screen_->show(buffers_->framebuffer(buffer), drawings_[buffer].fence.get(), serial_ + 1, now);
-  if (shown) queue_.submitted(buffer, picture_id, ++serial_);
+  if (!shown) return shown;
+  drawings_[buffer].submit = now;
+  queue_.submitted(buffer, picture_id, ++serial_);
   return shown;
 }
 

@@ -74,14 +74,15 @@ class KmsDisplay final : public hal::Display, public PictureSource {
   /// The picture in a buffer, until it flips.
   struct Drawing {
     hal::RenderInstants instants;
-    rt::UniqueFd fence;  // none: all pixels are written
+    rt::Timestamp submit;  // to the kernel
+    rt::UniqueFd fence;    // none: all pixels are written
   };
 
   KmsDisplay(const KmsConfig& config, std::unique_ptr<kms::Screen> screen);
   [[nodiscard]] std::expected<void, std::string> makeRenderer();
   [[nodiscard]] std::expected<void, std::string> makeBuffers();
   void attend(rt::Timestamp now);
-  void onFlip(const kms::FlipEvent& event);
+  void onFlip(const kms::FlipEvent& event, rt::Timestamp now);
   void followMode();
   [[nodiscard]] bool buffersFit() const;
   [[nodiscard]] rt::Result<void> fitBuffers();
@@ -103,8 +104,7 @@ class KmsDisplay final : public hal::Display, public PictureSource {
   std::uint64_t losses_ = 0;
   std::uint64_t serial_ = 0;           // of the last commit
   std::optional<bool> vblanks_known_;  // asked at the first flip of a mode
-  std::uint64_t vblank_ = 0;
-  std::uint32_t sequence_ = 0;
+  kms::Vblank vblank_{};               // of the last flip
   std::vector<kms::FlipEvent> events_;
 };
 

@@ -51,10 +51,13 @@ void ScanoutQueue::submitted(std::uint32_t buffer, std::uint64_t picture_id, std
   pending_serial_ = serial;
 }
 
-std::optional<std::uint32_t> ScanoutQueue::onFlip(std::uint64_t serial, std::uint64_t vblank,
-                                                  rt::Timestamp at) {
-  const auto flipped = find(BufferState::kPending);
-  if (!flipped || serial != pending_serial_) return std::nullopt;
+std::optional<std::uint32_t> ScanoutQueue::pendingBuffer(std::uint64_t serial) const {
+  return serial == pending_serial_ ? find(BufferState::kPending) : std::nullopt;
+}
+
+void ScanoutQueue::onFlip(std::uint64_t serial, std::uint64_t vblank, rt::Timestamp at) {
+  const auto flipped = pendingBuffer(serial);
+  if (!flipped) return;
   if (const auto before = find(BufferState::kOnScreen)) states_[*before] = BufferState::kFree;
   states_[*flipped] = BufferState::kOnScreen;
   const hal::PageFlip flip{.picture_id = pending_picture_, .page_flip = at, .vblank = vblank};
@@ -65,7 +68,6 @@ std::optional<std::uint32_t> ScanoutQueue::onFlip(std::uint64_t serial, std::uin
   } else {
     ++flip_count_;
   }
-  return flipped;
 }
 
 void ScanoutQueue::dropAll() {

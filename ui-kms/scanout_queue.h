@@ -52,9 +52,10 @@ class ScanoutQueue {
 
   /// The kernel took it; its flip will carry @p serial.
   void submitted(std::uint32_t buffer, std::uint64_t picture_id, std::uint64_t serial);
-  /// The buffer that came on screen; none for a flip from before a dropAll().
-  [[nodiscard]] std::optional<std::uint32_t> onFlip(std::uint64_t serial, std::uint64_t vblank,
-                                                    rt::Timestamp at);
+  /// The buffer whose flip that is; none for a flip from before a dropAll().
+  [[nodiscard]] std::optional<std::uint32_t> pendingBuffer(std::uint64_t serial) const;
+  /// That buffer came on screen.
+  void onFlip(std::uint64_t serial, std::uint64_t vblank, rt::Timestamp at);
   /// Nothing is on its way or on screen any more, and nothing drawn.
   void dropAll();
 

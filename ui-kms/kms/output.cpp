@@ -190,10 +190,11 @@ AtomicRequest::Outcome Output::darken() const {
   return request.carryOut(fd_, /*modeset=*/true);
 }
 
-bool Output::hasVblanks() const {
-  std::uint64_t sequence = 0;
+std::optional<Vblank> Output::lastVblank() const {
+  std::uint64_t number = 0;
   std::uint64_t at_ns = 0;
-  return drmCrtcGetSequence(fd_, crtc_, &sequence, &at_ns) == 0;
+  if (drmCrtcGetSequence(fd_, crtc_, &number, &at_ns) != 0) return std::nullopt;
+  return Vblank{.number = number, .at = rt::fromNs(static_cast<std::int64_t>(at_ns))};
 }
 
 }  // namespace ui::kms

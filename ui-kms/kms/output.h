@@ -2,16 +2,23 @@
 
 #include <cstdint>
 #include <expected>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <xf86drmMode.h>
 
+#include "rt/clock.h"
 #include "ui-kms/kms/atomic_request.h"
 #include "ui-kms/kms/connector.h"
 #include "ui-kms/kms/properties.h"
 
 namespace ui::kms {
+
+struct Vblank {
+  std::uint64_t number;
+  rt::Timestamp at;
+};
 
 /// The way of a picture inside the card: the primary plane fetches it from memory, the CRTC times
 /// it, the connector sends it to the screen. Only the connector is given by where the cable is; the
@@ -39,8 +46,8 @@ class Output {
   /// Switches the screen off, so that the next light() trains its link anew. Waits for it.
   [[nodiscard]] AtomicRequest::Outcome darken() const;
 
-  /// Whether the driver tells vblanks; without, flips happen at once and carry no number.
-  [[nodiscard]] bool hasVblanks() const;
+  /// The last vblank. None: the driver tells none; then flips happen at once and carry no number.
+  [[nodiscard]] std::optional<Vblank> lastVblank() const;
   [[nodiscard]] bool takesFences() const { return fence_property_ != 0; }
 
  private:

@@ -35,6 +35,11 @@ class Screen {
   [[nodiscard]] static std::expected<std::unique_ptr<Screen>, std::string> open(
       const ScreenConfig& config);
 
+  /// Lets go of the card at once: a driver's library may keep a copy of the descriptor for longer.
+  ~Screen() { device_->dropMaster(); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
   /// Does what is due: takes the card, looks for screens, notices what changed.
   void attend(rt::Timestamp now);
   /// Appends the flips since the last call. Never waits.
@@ -59,7 +64,10 @@ class Screen {
 
   [[nodiscard]] ScreenMachine::State state() const { return machine_.state(); }
   [[nodiscard]] const Device& device() const { return *device_; }
-  [[nodiscard]] bool hasVblanks() const { return output_ && output_->hasVblanks(); }
+  /// As Output::lastVblank().
+  [[nodiscard]] std::optional<Vblank> lastVblank() const {
+    return output_ ? output_->lastVblank() : std::nullopt;
+  }
   [[nodiscard]] bool takesFences() const { return output_ && output_->takesFences(); }
 
   /// Why nothing or less is shown and what to do, in one line; empty where all is well.
