@@ -106,8 +106,13 @@ class ImportGolden : public testing::Test {
     auto buffer = rt::DmaBuf::create(arena_.memoryFile(), 0, kSlots * slot_bytes_);
     display_ = makeDisplay(ui::DemosaicSite::kGpu);
     ASSERT_NE(display_, nullptr);
-    if (!display_->uploadReason().empty()) {
-      GTEST_SKIP() << "frames are uploaded here: " << display_->uploadReason();
+    const std::string reason(display_->uploadReason());
+    if (!reason.empty()) {
+      // A GPU may have wishes about pitch that this frame does not meet; the CPU has none.
+      const bool none_offered = !buffer || reason.find(" lists no ") != std::string::npos;
+      EXPECT_TRUE(none_offered || display_->renderer().find("llvmpipe") == std::string_view::npos)
+          << reason;
+      GTEST_SKIP() << "frames are uploaded here: " << reason;
     }
     ASSERT_TRUE(buffer) << buffer.error().where;  // the display made one
     buffer_.emplace(std::move(*buffer));

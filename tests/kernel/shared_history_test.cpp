@@ -1,0 +1,124 @@
+// The frame history as dma-bufs of a real kernel, and what a KMS device's renderer makes of them.
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <gbm.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include "appliance/capture/frame_history.h"
+#include "rt/clock.h"
+#include "rt/unique_fd.h"
+#include "ui-kms/renderer.h"
+
+namespace {
+
+using namespace appliance;
+
+const HistoryLayout kOneCamera{.frame_bytes = {std::size_t{1280} * 1024}, .sets = 300};
+
+std::unique_ptr<FrameHistory> makeShared(const HistoryLayout& layout) {
+  auto history = FrameHistory::create(layout, HistorySharing::kShared);
+  EXPECT_TRUE(history) << history.error();
+  return history ? std::move(*history) : nullptr;
+}
+
+/// The first byte of a piece of a dma-buf, as a device would read it.
+int firstByte(const rt::DmaBufPart& part) {
+  void* const mapped =
+      mmap(nullptr, 4096, PROT_READ, MAP_SHARED, part.fd, static_cast<off_t>(part.offset_bytes));
+  if (mapped == MAP_FAILED) return -1;
+  const int byte = *static_cast<const unsigned char*>(mapped);
+  munmap(mapped, 4096);
+  return byte;
+}
+
+TEST(SharedHistory, ARingOf300FramesIsAFewDmaBufsWithEveryFrameInItsPlace) {
+  const rt::Timestamp begin = rt::now();
+  const auto history = makeShared(kOneCamera);
+  const std::chrono::duration<double, std::milli> shared_ms = rt::now() - begin;
+  ASSERT_NE(history, nullptr);
+  ASSERT_EQ(history->notShared(), "");
+  const auto plain_begin = rt::now();
+  ASSERT_TRUE(FrameHistory::create(kOneCamera));
+  const std::chrono::duration<double, std::milli> plain_ms = rt::now() - plain_begin;
+  std::printf("history of one camera: %.0f ms shared, %.0f ms private\n", shared_ms.count(),
+              plain_ms.count());
+
+  CameraFrames& frames = history->camera(0);
+  std::vector<std::uint32_t> queue(frames.firstSlots().begin(), frames.firstSlots().end());
+  for (std::uint64_t trigger = 1; trigger <= 320; ++trigger) {
+    const std::uint32_t slot = queue.front();
+    queue.erase(queue.begin());
+    frames.slots()[slot].front() = static_cast<std::byte>(trigger);
+    queue.push_back(frames.store(slot, {.trigger = trigger}));
+  }
+  std::set<std::uint64_t> buffers;
+  for (std::uint64_t trigger = 21; trigger <= 320; ++trigger) {
+    const auto frame = frames.tryPin(trigger);
+    ASSERT_TRUE(frame) << trigger;
+    EXPECT_EQ(firstByte(frame->dma_buf), static_cast<int>(trigger & 0xFF)) << trigger;
+    buffers.insert(frame->dma_buf.buffer);
+  }
+  EXPECT_LE(buffers.size(), 7U);  // 48 frames fit into 64 MiB
+}
+
+/// At most @p more files than are open now, until the end of the scope.
+class FewerFiles {
+ public:
+  explicit FewerFiles(rlim_t more) {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rt::UniqueFd next(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+    const rlimit few{.rlim_cur = static_cast<rlim_t>(next.get()) + more,
+                     .rlim_max = before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &few);
+  }
+  ~FewerFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  FewerFiles(const FewerFiles&) = delete;
+  FewerFiles& operator=(const FewerFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(SharedHistory, OutOfFileDescriptorsItServesUnsharedAndSaysWhatToRaise) {
+  const FewerFiles few(4);
+  const auto history = makeShared(kOneCamera);
+  ASSERT_NE(history, nullptr);
+  EXPECT_NE(history->notShared().find("raise LimitNOFILE"), std::string::npos)
+      << history->notShared();
+  CameraFrames& frames = history->camera(0);
+  (void)frames.store(frames.firstSlots()[0], {.trigger = 1});
+  const auto frame = frames.tryPin(1);
+  ASSERT_TRUE(frame);
+  EXPECT_FALSE(frame->dma_buf.valid());
+}
+
+// Drawing from what it imported would end the process.
+TEST(ImportOnKms, IsNotTriedWithTheSoftwareRendererAlthoughEglListsIt) {
+  const rt::UniqueFd card(::open("/dev/dri/card0", O_RDWR | O_CLOEXEC));
+  ASSERT_TRUE(card.valid()) << "the test kernel's screen";
+  const std::unique_ptr<gbm_device, decltype(&gbm_device_destroy)> gbm(
+      gbm_create_device(card.get()), &gbm_device_destroy);
+  ASSERT_NE(gbm, nullptr);
+  const auto renderer = ui::Renderer::create({.width_px = 320,
+                                              .height_px = 256,
+                                              .source_width_px = 320,
+                                              .source_height_px = 256,
+                                              .gbm = gbm.get(),
+                                              .demosaic = ui::DemosaicSite::kGpu});
+  ASSERT_TRUE(renderer) << renderer.error();
+  ASSERT_TRUE((*renderer)->context().software()) << (*renderer)->context().renderer();
+  EXPECT_EQ((*renderer)->uploadReason(),
+            "a software renderer on a KMS device cannot read imported memory");
+}
+
+}  // namespace
