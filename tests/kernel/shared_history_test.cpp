@@ -1,11 +1,15 @@
 // The frame history as dma-bufs of a real kernel, and what a KMS device's renderer makes of them.
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -15,6 +19,8 @@
 #include <sys/resource.h>
 
 #include "appliance/capture/frame_history.h"
+#include "appliance/geometry/rig.h"
+#include "appliance/render/render_loop.h"
 #include "rt/clock.h"
 #include "rt/unique_fd.h"
 #include "ui-kms/renderer.h"
@@ -100,6 +106,93 @@ TEST(SharedHistory, OutOfFileDescriptorsItServesUnsharedAndSaysWhatToRaise) {
   const auto frame = frames.tryPin(1);
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->dma_buf.valid());
+}
+
+/// A screen that notes where its last frame came from.
+class NotingDisplay final : public hal::Display {
+ public:
+  [[nodiscard]] hal::DisplayMode mode() const override { return {320, 256, 60}; }
+  [[nodiscard]] std::string_view renderer() const override { return "a test"; }
+  [[nodiscard]] std::string_view uploadReason() const override { return {}; }
+  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::WarpPlan* plan,
+                                                       const hal::StatusLine& /*status*/) override {
+    hal::RenderInstants instants;
+    instants.imported = plan != nullptr && plan->source.dma_buf.valid();
+    if (instants.imported) first_byte_ = firstByte(plan->source.dma_buf);
+    return instants;
+  }
+  [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t /*picture_id*/) override {
+    return rt::now();
+  }
+  [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override { return std::nullopt; }
+  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override { return std::nullopt; }
+  [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return std::nullopt; }
+  [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
+  void releaseScreen() override {}
+  void takeScreen() override {}
+  void detach() override {}
+
+  [[nodiscard]] int firstByteShown() const { return first_byte_; }
+
+ private:
+  std::atomic<int> first_byte_ = -1;
+};
+
+/// Counts the pictures that were told to be read in place.
+class ImportCounter final : public PictureObserver {
+ public:
+  void onPicture(const ShownPicture& picture) noexcept override {
+    if (picture.record.imported) ++imported_;
+  }
+  [[nodiscard]] int imported() const { return imported_; }
+
+ private:
+  std::atomic<int> imported_ = 0;
+};
+
+TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWasRead) {
+  Rig rig;
+  rig.cameras.push_back({.name = "only",
+                         .width_px = 320,
+                         .height_px = 256,
+                         .lens = {.fx_px = 300, .fy_px = 300, .max_radius = 1}});
+  rig.cameras[0].t_cam_rig_m = {0, 0, 4};
+  fillReferences(rig);
+  const auto history =
+      makeShared({.frame_bytes = {std::size_t{320} * 256}, .sets = 10, .in_flight = 2});
+  ASSERT_NE(history, nullptr);
+  ASSERT_EQ(history->notShared(), "");
+  CaptureBoard board(1);
+  TargetTrack target({0, 0, 0});
+  NotingDisplay display;
+  ImportCounter observer;
+  RenderLoop loop({.rig = rig,
+                   .history = *history,
+                   .board = board,
+                   .target = target,
+                   .display = display,
+                   .trace = nullptr,
+                   .observer = &observer},
+                  {.trigger_period = std::chrono::milliseconds(25)});
+  const std::jthread render([&loop](const std::stop_token& stop) { loop.run(stop); });
+
+  CameraFrames& frames = history->camera(0);
+  std::uint32_t slot = frames.firstSlots()[0];
+  for (const std::uint64_t trigger : {std::uint64_t{1}, std::uint64_t{2}}) {
+    frames.slots()[slot].front() = static_cast<std::byte>(40 + trigger);
+    board.edges.post(trigger, rt::now());
+    slot = frames.store(slot, {.trigger = trigger});
+    board.frame_ready.ring();
+  }
+  const rt::Timestamp patience = rt::now() + std::chrono::seconds(20);
+  while (display.firstByteShown() != 42 && rt::now() < patience) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(display.firstByteShown(), 42);
+  while (observer.imported() == 0 && rt::now() < patience) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GT(observer.imported(), 0);
 }
 
 // Drawing from what it imported would end the process.
