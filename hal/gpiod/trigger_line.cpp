@@ -1,5 +1,6 @@
 #include "hal/gpiod/trigger_line.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -63,6 +64,9 @@ std::expected<std::vector<ListedLine>, std::string> findTriggerLines(
                              " (" + line->chip_label + ") is behind an " + line->bus +
                              " expander, whose edges come late and unevenly: wire the trigger to "
                              "a line of the board itself");
+    if (std::ranges::find(lines, name, &ListedLine::name) != lines.end())
+      return std::unexpected(std::string(kKey) + ": \"" + name +
+                             "\" stands twice: name every line once");
     if (!lines.empty() && line->chip != lines.front().chip)
       return std::unexpected(std::string(kKey) + ": \"" + lines.front().name + "\" is on " +
                              lines.front().chip + ", \"" + name + "\" is on " + line->chip +
