@@ -62,18 +62,19 @@ void Camera::onLine1(bool rising, rt::Timestamp edge, std::uint64_t trigger_numb
   const auto source = static_cast<TriggerSource>(registers_.get(reg::kTriggerSource));
   if (source != TriggerSource::kLine1) return;
   if (rising != (activation == TriggerActivation::kRisingEdge)) return;
-  trigger(edge, trigger_number);
+  trigger(edge, trigger_number, identity_.opto_delay);
 }
 
 void Camera::triggerOwn(TriggerSource source, rt::Timestamp now) {
   if (static_cast<TriggerSource>(registers_.get(reg::kTriggerSource)) != source) return;
-  trigger(now, ++own_triggers_);
+  trigger(now, ++own_triggers_, rt::Nanoseconds{0});
 }
 
-void Camera::trigger(rt::Timestamp edge, std::uint64_t number) {
+void Camera::trigger(rt::Timestamp edge, std::uint64_t number, rt::Nanoseconds input_delay) {
   if (!acquiring_ || registers_.get(reg::kTriggerMode) == 0) return;
-  const ExposureTiming timing{fromMicroseconds(registers_.getFloat(reg::kTriggerDelay)),
-                              fromMicroseconds(registers_.getFloat(reg::kExposureTime))};
+  const ExposureTiming timing{
+      input_delay + fromMicroseconds(registers_.getFloat(reg::kTriggerDelay)),
+      fromMicroseconds(registers_.getFloat(reg::kExposureTime))};
   const auto link_free_at = transfer_ ? transfer_->pacing.scheduledEnd() : rt::Timestamp{};
   const auto exposure = tryExpose(number, edge, timing, exposure_.has_value(), link_free_at);
   if (exposure) {

@@ -38,9 +38,10 @@ struct RigContext {
 
 /// One GigE Vision camera: registers and control channel on one socket, frames on another.
 ///
-/// A trigger edge starts an exposure; its frame leaves when the exposure has ended, paced
-/// like a real link. An edge is an overtrigger (counted, ignored) while the previous exposure
-/// runs, and when its own exposure would end before the previous frame has left.
+/// A trigger edge starts an exposure, its opto-isolator's delay and TriggerDelay later; its frame
+/// leaves when the exposure has ended, paced like a real link. An edge is an overtrigger (counted,
+/// ignored) while the previous exposure runs, and when its own exposure would end before the
+/// previous frame has left.
 ///
 /// Threads  One: the event loop.
 class Camera {
@@ -83,7 +84,7 @@ class Camera {
   gvcp::Status startAcquisition(rt::Timestamp now);
   void stopAcquisition();
   void powerOn();
-  void trigger(rt::Timestamp edge, std::uint64_t number);
+  void trigger(rt::Timestamp edge, std::uint64_t number, rt::Nanoseconds input_delay);
   void triggerOwn(TriggerSource source, rt::Timestamp now);
   void startTransfer();
   void sendDue(rt::Timestamp now);

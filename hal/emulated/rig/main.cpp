@@ -81,6 +81,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--seconds", a.seconds, "stop after this time; 0: run until stopped")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
+  app.add_option("--opto-delays-us", a.rig.opto_delays_us,
+                 "what each camera's Line1 takes to see an edge; one value per camera")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--loss", a.rig.loss, "probability that a stream packet is lost")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hal/emulated/rig/gvcp.h"
+#include "rt/clock.h"
 
 namespace emulator {
 
@@ -23,6 +24,7 @@ struct Identity {
   std::uint32_t subnet_mask = 0;  ///< host order
   std::string user_name;
   SizePx sensor;
+  rt::Nanoseconds opto_delay{};  ///< from the edge on Line1's wire to the sensor's logic
 };
 
 /// The register space of one camera: bootstrap registers, features, the GenICam file.

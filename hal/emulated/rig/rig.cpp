@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <vector>
@@ -29,6 +30,11 @@ constexpr rt::Nanoseconds kLongestSleep = std::chrono::seconds(1);
 constexpr int kMaxEvents = 64;
 
 enum Source : std::uint64_t { kBroadcast = 1u << 20, kWire, kSignal };
+
+rt::Nanoseconds optoDelay(const std::vector<double>& delays_us, std::uint32_t camera) {
+  if (delays_us.empty()) return rt::Nanoseconds{0};
+  return rt::Nanoseconds{std::llround(delays_us[camera] * 1e3)};
+}
 
 void sendAnswer(int fd, const sockaddr_in& to, std::span<const std::uint8_t> answer) {
   // An answer that does not go out is asked for again: GVCP runs on UDP.
@@ -97,6 +103,10 @@ std::expected<void, std::string> Rig::State::open() {
   watch(wire.get(), kWire);
 
   const std::uint32_t count = context.scene.cameraCount();
+  if (const std::size_t delays = options.opto_delays_us.size(); delays != 0 && delays != count) {
+    return std::unexpected("--opto-delays-us: " + std::to_string(delays) + " delays for " +
+                           std::to_string(count) + " cameras: give one per camera");
+  }
   control.reserve(count);
   streams.reserve(count);
   cameras.reserve(count);
@@ -132,7 +142,8 @@ std::expected<void, std::string> Rig::State::openCamera(std::uint32_t number) {
                           .address = address,
                           .subnet_mask = kSubnetMask,
                           .user_name = context.scene.cameraName(number),
-                          .sensor = context.scene.sensorSize(number)};
+                          .sensor = context.scene.sensorSize(number),
+                          .opto_delay = optoDelay(options.opto_delays_us, number)};
   cameras.emplace_back(identity, stream_socket->get(), context);
   control.push_back(std::move(*control_socket));
   streams.push_back(std::move(*stream_socket));

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/emulated/rig/run_record.h"
 #include "hal/emulated/rig/scene.h"
@@ -17,7 +18,8 @@ struct RigOptions {
   std::uint16_t wire_port = 3990;
   double link_bits_per_second = 1e9;
   std::uint32_t max_packet_bytes = 9000;
-  double loss = 0;  ///< probability that a stream packet is swallowed
+  std::vector<double> opto_delays_us;  ///< of each camera's Line1; empty: none
+  double loss = 0;                     ///< probability that a stream packet is swallowed
   std::uint64_t seed = 1;
   double internal_trigger_hz = 0;  ///< 0: edges come from the wire only
   std::optional<rt::Nanoseconds> run_for;
