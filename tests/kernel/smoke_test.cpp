@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 TEST(KernelBed, HasAScreen) {
   EXPECT_TRUE(fs::exists("/dev/dri/card0"));
-  EXPECT_EQ(test::readAttribute("/sys/class/drm/card0-Virtual-1/status"), "connected");
+  // "unknown" until somebody looks.
+  EXPECT_NE(test::readAttribute("/sys/class/drm/card0-Virtual-1/status"), "disconnected");
 }
 
 TEST(KernelBed, MakesGpioChipsWithNamedLines) {
