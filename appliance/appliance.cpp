@@ -379,6 +379,11 @@ bool Appliance::setTarget(const std::array<double, 3>& target_m) {
   return true;
 }
 
+void Appliance::setScreenReleased(bool released) {
+  render_loop_->setScreenReleased(released);
+  board_.frame_ready.ring();
+}
+
 Status Appliance::status() const {
   const RenderStatus render = render_loop_->status();
   const auto to_ms = [](rt::Nanoseconds t) { return static_cast<std::uint32_t>(t / 1'000'000ns); };
@@ -394,6 +399,8 @@ Status Appliance::status() const {
                 .genlock = board_.genlock.status.load(),
                 .degraded = degraded_,
                 .renderer = renderer_,
+                .screen = render.screen.state,
+                .screen_message = render.screen.message.data(),
                 .source_path = source_path_};
   if (panel_loop_ && panel_loop_->lost()) {
     status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");

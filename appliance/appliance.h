@@ -54,6 +54,7 @@ class Appliance final : public ControlSink, public StatusSource {
 
   [[nodiscard]] bool command(const Command& command) override;
   [[nodiscard]] bool setTarget(const std::array<double, 3>& target_m) override;
+  void setScreenReleased(bool released) override;
   [[nodiscard]] Status status() const override;
 
  private:

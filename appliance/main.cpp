@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <expected>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -15,8 +17,8 @@
 #include "appliance/camera_watch.h"
 #include "appliance/config/config.h"
 #include "appliance/control/control_server.h"
-#include "appliance/geometry/rig_file.h"
 #include "appliance/genlock_watch.h"
+#include "appliance/geometry/rig_file.h"
 #include "appliance/log.h"
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
@@ -24,6 +26,7 @@
 #include "appliance/trigger_wiring.h"
 #include "rt/clock.h"
 #include "ui-kms/draw_workers.h"
+#include "ui-kms/kms_display.h"
 #include "ui-kms/offscreen_display.h"
 
 namespace {
@@ -55,22 +58,77 @@ std::expected<Site, std::string> loadSite(const Options& options) {
   return Site{std::move(*config), std::move(*rig)};
 }
 
-std::expected<std::unique_ptr<ui::OffscreenDisplay>, std::string> makeDisplay(
-    const Config::Display& config, const Rig& rig) {
-  if (config.backend != "offscreen") {
-    return std::unexpected("display.backend = \"" + config.backend + "\" is not \"offscreen\"");
-  }
-  auto display =
-      ui::OffscreenDisplay::create({.renderer = {.width_px = config.width_px,
-                                                 .height_px = config.height_px,
-                                                 .source_width_px = rig.cameras.front().width_px,
-                                                 .source_height_px = rig.cameras.front().height_px,
-                                                 .font_path = config.font,
-                                                 .software_threads = config.render_threads},
-                                    .refresh_hz = config.refresh_hz});
-  if (display && !(*display)->textWarning().empty()) logWarning((*display)->textWarning());
-  return display;
+struct Screen {
+  std::unique_ptr<hal::Display> display;
+  ui::PictureSource* source = nullptr;  // the same object
+};
+
+ui::RendererConfig rendererConfig(const Config::Display& config, const Rig& rig) {
+  return {.width_px = config.width_px,
+          .height_px = config.height_px,
+          .source_width_px = rig.cameras.front().width_px,
+          .source_height_px = rig.cameras.front().height_px,
+          .font_path = config.font,
+          .software_threads = config.render_threads};
 }
+
+template <class Display>
+Screen screenOf(std::unique_ptr<Display> display) {
+  if (!display->textWarning().empty()) logWarning(display->textWarning());
+  ui::PictureSource* source = display.get();
+  return {.display = std::move(display), .source = source};
+}
+
+/// @p missing: the screen that this stands for, in one line; empty where none was asked for.
+std::expected<Screen, std::string> makeOffscreen(const Config::Display& config, const Rig& rig,
+                                                 const std::string& missing) {
+  hal::ScreenStatus status;
+  if (!missing.empty()) status.state = hal::ScreenState::kNoScreen;
+  std::snprintf(status.message.data(), status.message.size(), "%s", missing.c_str());
+  auto display = ui::OffscreenDisplay::create(
+      {.renderer = rendererConfig(config, rig), .refresh_hz = config.refresh_hz, .screen = status});
+  if (!display) return std::unexpected(display.error());
+  return screenOf(std::move(*display));
+}
+
+/// A screen that is not there yet is waited for. Without a card that could have one the box still
+/// captures, keeps and answers: decision 0011.
+std::expected<Screen, std::string> makeScreen(const Config& config, const Rig& rig) {
+  if (config.display.backend == "offscreen") return makeOffscreen(config.display, rig, "");
+  if (config.display.backend != "kms") {
+    return std::unexpected("display.backend = \"" + config.display.backend +
+                           "\" is neither \"kms\" nor \"offscreen\"");
+  }
+  if (const auto mode = ui::kms::parseModeWish(config.display.mode); !mode) {
+    return std::unexpected("display.mode = " + mode.error());
+  }
+  auto display = ui::KmsDisplay::create({.renderer = rendererConfig(config.display, rig),
+                                         .refresh_hz = config.display.refresh_hz,
+                                         .device = config.display.device,
+                                         .mode = config.display.mode,
+                                         .trigger_hz = config.trigger.rate_hz,
+                                         .queue_depth = config.display.queue_depth});
+  if (display) {
+    logInfo("screen: " + (*display)->description());
+    return screenOf(std::move(*display));
+  }
+  return makeOffscreen(config.display, rig, display.error());
+}
+
+/// What happens to the screen, a line at each change.
+class ScreenWatch {
+ public:
+  [[nodiscard]] std::optional<std::string> look(const Status& status) {
+    std::string line = "screen: " + std::string(nameOf(status.screen));
+    if (!status.screen_message.empty()) line += ": " + status.screen_message;
+    if (line == last_) return std::nullopt;
+    last_ = line;
+    return line;
+  }
+
+ private:
+  std::string last_ = "screen: showing";
+};
 
 bool scheduleDrawWorkers(const Config::ThreadSchedule& how) {
   return ui::scheduleDrawWorkers(
@@ -91,6 +149,7 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
   auto control = openControl(config, running);
   CameraWatch watch;
   GenlockWatch genlock_watch;
+  ScreenWatch screen_watch;
   sd_notify(0, "READY=1");
   while (!stop.requested()) {
     if (control) {
@@ -105,6 +164,7 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
     const Status status = running.status();
     for (const std::string& line : watch.look(status, rt::now())) logWarning(line);
     if (const auto line = genlock_watch.look(status)) logInfo(*line);
+    if (const auto line = screen_watch.look(status)) logWarning(*line);
     sd_notify(0, "WATCHDOG=1");
   }
   sd_notify(0, "STOPPING=1");
@@ -122,12 +182,13 @@ std::expected<void, std::string> releaseLines(const Options& options) {
 /// Errors   One line; nothing is left running.
 std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
   const Config& config = site.config;
-  auto display = makeDisplay(config.display, site.rig);
-  if (!display) return std::unexpected(display.error());
+  const auto screen = makeScreen(config, site.rig);
+  if (!screen) return std::unexpected(screen.error());
+  hal::Display& display = *screen->display;
 
   std::unique_ptr<PictureRecorder> recorder;
   if (!config.record.directory.empty()) {
-    auto made = PictureRecorder::create(config.record, (*display)->mode(), **display);
+    auto made = PictureRecorder::create(config.record, display.mode(), *screen->source);
     if (!made) return std::unexpected(made.error());
     recorder = std::move(*made);
   }
@@ -137,12 +198,12 @@ std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
     if (config.realtime.require) return std::unexpected(refused);
     logWarning(refused);
   }
-  auto running = Appliance::start(config, site.rig, **display, recorder.get());
+  auto running = Appliance::start(config, site.rig, display, recorder.get());
   if (!running) return std::unexpected(running.error());
   logInfo(motionBlurLine(config, site.rig));
   for (const std::string& line : (*running)->status().degraded) logWarning(line);
   logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
-          std::string((*display)->renderer()) + ", frames by " + (*running)->status().source_path);
+          std::string(display.renderer()) + ", frames by " + (*running)->status().source_path);
 
   serve(**running, config.control, stop);
 

@@ -19,6 +19,7 @@ struct OffscreenConfig {
   RendererConfig renderer;
   double refresh_hz = 60;
   std::uint32_t buffers = 3;
+  hal::ScreenStatus screen;  ///< what screen() says: where this stands for a screen that failed
 };
 
 /// A screen without a screen: the same drawing, buffers and vblanks, kept in memory.
@@ -49,7 +50,7 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
     return pacer_.timing();
   }
   [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return std::nullopt; }
-  [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
+  [[nodiscard]] hal::ScreenStatus screen() const override { return config_.screen; }
   /// Nobody else can show anything here.
   void releaseScreen() override {}
   void takeScreen() override {}

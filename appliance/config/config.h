@@ -61,6 +61,9 @@ struct Config {
 
   struct Display {
     std::string backend = "offscreen";
+    std::string device;  ///< empty: the first card with a screen
+    std::string mode;    ///< "1920x1080@59.94"; empty: the best for the trigger rate
+    std::uint32_t queue_depth = 1;
     std::uint32_t width_px = 1280;
     std::uint32_t height_px = 720;
     double refresh_hz = 80;

@@ -79,6 +79,12 @@ ControlClient::Answer ControlClient::freeze() {
 ControlClient::Answer ControlClient::sweep() {
   return withoutReply(call("Sweep", ""));
 }
+ControlClient::Answer ControlClient::releaseScreen() {
+  return withoutReply(call("ReleaseScreen", ""));
+}
+ControlClient::Answer ControlClient::takeScreen() {
+  return withoutReply(call("TakeScreen", ""));
+}
 
 std::expected<std::string, std::string> ControlClient::status() {
   return call("Status", "");

@@ -26,6 +26,8 @@ class ControlClient {
   [[nodiscard]] Answer setTarget(const std::array<double, 3>& target_m);
   [[nodiscard]] Answer freeze();
   [[nodiscard]] Answer sweep();
+  [[nodiscard]] Answer releaseScreen();
+  [[nodiscard]] Answer takeScreen();
   /// The JSON of appliance::toJson(Status).
   [[nodiscard]] std::expected<std::string, std::string> status();
 

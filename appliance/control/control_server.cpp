@@ -84,6 +84,12 @@ int onSweep(sd_bus_message* message, void* userdata, sd_bus_error* error) {
   return answer(message, serverOf(userdata), Command{Command::Kind::kSweep}, error);
 }
 
+template <bool kReleased>
+int onScreen(sd_bus_message* message, void* userdata, sd_bus_error* /*error*/) {
+  serverOf(userdata).sink.setScreenReleased(kReleased);
+  return sd_bus_reply_method_return(message, "");
+}
+
 int onStatus(sd_bus_message* message, void* userdata, sd_bus_error* /*error*/) {
   return sd_bus_reply_method_return(message, "s",
                                     toJson(serverOf(userdata).source.status()).c_str());
@@ -152,6 +158,10 @@ constexpr Append kRenderer = [](sd_bus_message* reply, const Status& status) {
   return sd_bus_message_append(reply, "s", status.renderer.c_str());
 };
 
+constexpr Append kScreen = [](sd_bus_message* reply, const Status& status) {
+  return sd_bus_message_append(reply, "s", std::string(nameOf(status.screen)).c_str());
+};
+
 // Who may call is the bus's policy (systemd/org.kagami.Kagami1.conf), not sd-bus's own rule.
 constexpr std::uint64_t kOpenToAll = SD_BUS_VTABLE_UNPRIVILEGED;
 
@@ -170,6 +180,7 @@ const auto kVtable = std::to_array<sd_bus_vtable>({
     SD_BUS_PROPERTY("Cameras", "a(sstt)", onGet<appendCameras>, 0, 0),
     SD_BUS_PROPERTY("Degraded", "as", onGet<appendDegraded>, 0, 0),
     SD_BUS_PROPERTY("Renderer", "s", onGet<kRenderer>, 0, 0),
+    SD_BUS_PROPERTY("Screen", "s", onGet<kScreen>, 0, 0),
     SD_BUS_METHOD_WITH_ARGS("SetMode", SD_BUS_ARGS("s", mode), SD_BUS_NO_RESULT, onSetMode,
                             kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("SetDelay", SD_BUS_ARGS("u", delay_ms), SD_BUS_NO_RESULT, onSetDelay,
@@ -180,6 +191,10 @@ const auto kVtable = std::to_array<sd_bus_vtable>({
                             SD_BUS_NO_RESULT, onSetTarget, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Freeze", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onFreeze, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Sweep", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onSweep, kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("ReleaseScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onScreen<true>,
+                            kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("TakeScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onScreen<false>,
+                            kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Status", SD_BUS_NO_ARGS, SD_BUS_RESULT("s", json), onStatus,
                             kOpenToAll),
     SD_BUS_VTABLE_END,

@@ -11,6 +11,11 @@ std::string_view nameOf(CameraState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+std::string_view nameOf(hal::ScreenState state) {
+  constexpr std::array<std::string_view, 3> kNames = {"showing", "no screen", "released"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
 namespace {
 
 nlohmann::ordered_json genlockObject(const Status& status) {
@@ -46,6 +51,7 @@ std::string toJson(const Status& status) {
       {"genlock", genlockObject(status)},
       {"degraded", status.degraded},
       {"renderer", status.renderer},
+      {"screen", {{"state", nameOf(status.screen)}, {"message", status.screen_message}}},
       {"source_path", status.source_path},
   };
   for (const CameraStatus& camera : status.cameras) {

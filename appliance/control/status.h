@@ -9,6 +9,7 @@
 #include "appliance/capture/genlock_status.h"
 #include "appliance/director/command.h"
 #include "appliance/director/shot.h"
+#include "hal/display.h"
 
 namespace appliance {
 
@@ -40,13 +41,16 @@ struct Status {
   std::uint64_t frames_incomplete = 0;
   std::vector<CameraStatus> cameras;
   GenlockStatus genlock;
-  std::string genlock_text;  ///< the same in one line
+  std::string genlock_text;           ///< the same in one line
   std::vector<std::string> degraded;  ///< one line per thing that is less than configured
   std::string renderer;
-  std::string source_path;  ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
+  hal::ScreenState screen = hal::ScreenState::kShowing;
+  std::string screen_message;  ///< why nothing or less is shown, and what to do; may be empty
+  std::string source_path;     ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
 };
 
 [[nodiscard]] std::string_view nameOf(CameraState state);
+[[nodiscard]] std::string_view nameOf(hal::ScreenState state);
 
 /// One JSON object with the names of the fields above; views from 1.
 [[nodiscard]] std::string toJson(const Status& status);
@@ -70,6 +74,8 @@ class ControlSink {
   [[nodiscard]] virtual bool command(const Command& command) = 0;
   /// Rig frame, metres; finite.
   [[nodiscard]] virtual bool setTarget(const std::array<double, 3>& target_m) = 0;
+  /// True: another program may show something; false: the screen is ours again.
+  virtual void setScreenReleased(bool released) = 0;
 };
 
 }  // namespace appliance

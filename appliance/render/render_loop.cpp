@@ -29,9 +29,7 @@ hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
 RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& parameters)
     : parts_(parts),
       parameters_(parameters),
-      view_{.width_px = parts.display.mode().width_px,
-            .height_px = parts.display.mode().height_px,
-            .zoom = parameters.zoom},
+      view_{.width_px = 0, .height_px = 0, .zoom = parameters.zoom},
       stored_(parts.history, parts.board.edges),
       director_(parameters.director),
       views_(parts.rig.cameras.size()),
@@ -40,7 +38,9 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
 void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
-    (void)parts_.board.frame_ready.waitUntil(rt::now() + parameters_.trigger_period);
+    const rt::Timestamp period_later = rt::now() + parameters_.trigger_period;
+    (void)parts_.board.frame_ready.waitUntil(
+        std::min(parts_.display.nextCall().value_or(period_later), period_later));
     rt::sleepUntil(allowance_.nextBegin());
     turn();
   }
@@ -61,8 +61,11 @@ void RenderLoop::turn() noexcept {
   wanted.target_point_end = rt::now();
   parts_.board.shown_camera.store(wanted.shot.camera_shown, std::memory_order_relaxed);
 
-  if (!onScreen(wanted) && mayDraw(wanted, wake) && show(wanted, wake)) {
+  followScreen();
+  const bool visible = counters_.screen.state == hal::ScreenState::kShowing;
+  if (visible && !onScreen(wanted) && mayDraw(wanted, wake) && show(wanted, wake)) {
     on_screen_ = wanted;
+    stale_ = false;
     first_command_ = {};
   }
   recordFlips();
@@ -83,8 +86,21 @@ void RenderLoop::takeCommands() noexcept {
   }
 }
 
+/// Without a screen nothing is drawn; one that came back or changed gets its picture at once, even
+/// of a stopped moment.
+void RenderLoop::followScreen() noexcept {
+  hal::Display& display = parts_.display;
+  const bool released = counters_.screen.state == hal::ScreenState::kReleased;
+  if (screen_released_.load(std::memory_order_relaxed) != released) {
+    released ? display.takeScreen() : display.releaseScreen();
+  }
+  const hal::ScreenStatus screen = display.screen();
+  if (screen.changes != counters_.screen.changes) stale_ = true;
+  counters_.screen = screen;
+}
+
 bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
-  return picture_id_ != 0 && first_command_ == rt::Timestamp{} &&
+  return picture_id_ != 0 && !stale_ && first_command_ == rt::Timestamp{} &&
          wanted.shot.trigger == on_screen_.shot.trigger &&
          wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
          wanted.line.view() == on_screen_.line.view() && wanted.target == on_screen_.target;
@@ -94,7 +110,8 @@ bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
 /// that one would tell, the next one tells with the same vblank.
 bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) const noexcept {
   const Shot& shot = wanted.shot;
-  if (!locked_ || shot.mode != Mode::kLive || shot.trigger != on_screen_.shot.trigger) return true;
+  if (!locked_ || stale_ || shot.mode != Mode::kLive || shot.trigger != on_screen_.shot.trigger)
+    return true;
   return locked_->redrawFits(now, parts_.board.edges.edge(shot.trigger));
 }
 
@@ -118,6 +135,9 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     record.target_point_begin = wanted.target_point_begin;
     record.target_point_end = wanted.target_point_end;
     record.homographies_begin = rt::now();
+    const hal::DisplayMode mode = parts_.display.mode();
+    view_.width_px = mode.width_px;
+    view_.height_px = mode.height_px;
     computeViews(parts_.rig, wanted.target.vector(), view_, views_);
     record.homographies_end = rt::now();
     const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];

@@ -44,6 +44,7 @@ struct RenderStatus {
   std::uint64_t pictures = 0;
   std::uint64_t skipped = 0;  ///< pictures that the display was not ready for
   double shown_hz = 0;  ///< distinct frame sets a second, over the last whole second of pictures
+  hal::ScreenStatus screen;
 };
 
 /// Everything the render loop works with; all outlives it.
@@ -82,6 +83,12 @@ class RenderLoop {
   [[nodiscard]] CommandQueue& panelCommands() { return panel_commands_; }
   [[nodiscard]] CommandQueue& controlCommands() { return control_commands_; }
 
+  /// Gives the screen to whom wants it, or takes it back; the last call counts. Any thread; ring
+  /// CaptureBoard::frame_ready afterwards.
+  void setScreenReleased(bool released) noexcept {
+    screen_released_.store(released, std::memory_order_relaxed);
+  }
+
   [[nodiscard]] RenderStatus status() { return status_.latest(); }
   [[nodiscard]] Mode mode() const { return mode_.load(std::memory_order_relaxed); }
 
@@ -96,6 +103,7 @@ class RenderLoop {
 
   void turn() noexcept;
   void takeCommands() noexcept;
+  void followScreen() noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
   [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) const noexcept;
@@ -106,7 +114,7 @@ class RenderLoop {
 
   const RenderParts parts_;
   const RenderParameters parameters_;
-  const ViewParameters view_;
+  ViewParameters view_;  // of the screen's present mode
   HistoryViews stored_;
   Director director_;
   CommandQueue panel_commands_;
@@ -119,6 +127,7 @@ class RenderLoop {
   rt::Timestamp first_command_;  // when the oldest of them was given; the epoch: none
 
   Wanted on_screen_;
+  bool stale_ = false;  // the screen lost that picture
   RenderAllowance allowance_;
   rt::HighQuantile ready_delay_;         // of live frames
   std::optional<LockedVblanks> locked_;  // none: triggers are not locked to the screen
@@ -128,6 +137,7 @@ class RenderLoop {
   std::uint32_t shown_in_second_ = 0;
   rt::LatestValue<RenderStatus> status_;
   std::atomic<Mode> mode_{Mode::kLive};
+  std::atomic<bool> screen_released_{false};
 };
 
 }  // namespace appliance

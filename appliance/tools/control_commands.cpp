@@ -78,6 +78,15 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   });
   kagami.add_subcommand("sweep", "Walk through all views of the stopped moment")
       ->callback([&place] { expectDone(connect(place).sweep()); });
+
+  CLI::App* screen = kagami.add_subcommand("screen", "Give the screen to another program");
+  screen->require_subcommand(1);
+  screen->add_subcommand("release", "Show nothing; capture goes on")->callback([&place] {
+    expectDone(connect(place).releaseScreen());
+  });
+  screen->add_subcommand("take", "Show pictures again")->callback([&place] {
+    expectDone(connect(place).takeScreen());
+  });
 }
 
 }  // namespace appliance

@@ -33,6 +33,9 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         status.at("frames_lost").get<unsigned long long>(),
         status.at("frames_incomplete").get<unsigned long long>());
     std::string text = head.data();
+    const std::string message = status.at("screen").at("message").get<std::string>();
+    text += "screen   " + status.at("screen").at("state").get<std::string>() +
+            (message.empty() ? "" : ": " + message) + "\n";
     text += "genlock  " + status.at("genlock").at("text").get<std::string>();
     const auto unlocks = status.at("genlock").at("unlocks").get<std::uint64_t>();
     if (unlocks > 0)

@@ -39,6 +39,10 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     target_m_ = target_m;
     return true;
   }
+  void setScreenReleased(bool released) override {
+    const std::scoped_lock lock(mutex_);
+    screen_ = released ? hal::ScreenState::kReleased : hal::ScreenState::kShowing;
+  }
   [[nodiscard]] appliance::Status status() const override {
     const std::scoped_lock lock(mutex_);
     appliance::Status status;
@@ -49,6 +53,7 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     status.history_ms = 7500;
     status.target_m = target_m_;
     status.shown_hz = 39.5;
+    status.screen = screen_;
     status.frames_lost = 3;
     for (int i = 1; i <= 20; ++i)
       status.cameras.push_back({"cam" + std::to_string(i), appliance::CameraState::kStreaming});
@@ -71,6 +76,7 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
   std::vector<Command> commands_;
   std::array<double, 3> target_m_{0, 0, 1};
   bool full_ = false;
+  hal::ScreenState screen_ = hal::ScreenState::kShowing;
 };
 
 class ControlInterface : public testing::Test {
@@ -121,6 +127,11 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
                            Command{Command::Kind::kFreezeToggle}, Command{Command::Kind::kSweep}));
   EXPECT_TRUE(kagami.setTarget({1, 2, 0.5}).has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{1, 2, 0.5}));
+  EXPECT_TRUE(kagami.releaseScreen().has_value());
+  EXPECT_EQ(box_.status().screen, hal::ScreenState::kReleased);
+  EXPECT_THAT(kagami.status().value(), HasSubstr("\"state\":\"released\""));
+  EXPECT_TRUE(kagami.takeScreen().has_value());
+  EXPECT_EQ(box_.status().screen, hal::ScreenState::kShowing);
 }
 
 TEST_F(ControlInterface, RefusesInvalidArgumentsWithOneLineAndChangesNothing) {
@@ -170,10 +181,10 @@ TEST_F(ControlInterface, IsIntrospectableAndReadableByBusctl) {
   const std::string object = " org.kagami.Kagami1 /org/kagami/Kagami1 ";
   const std::string seen = outputOf(busctl + "introspect" + object);
   for (const char* name :
-       {".SetMode",    ".SetDelay",         ".SetView", ".SetTarget", ".Freeze",
-        ".Sweep",      ".Status",           ".Mode",    ".View",      ".ViewShown",
-        ".DelayMs",    ".HistoryMs",        ".Target",  ".ShownHz",   ".Triggers",
-        ".FramesLost", ".FramesIncomplete", ".Cameras", ".Degraded",  ".Renderer"})
+       {".SetMode",  ".SetDelay", ".SetView",  ".SetTarget",     ".Freeze",           ".Sweep",
+        ".Status",   ".Mode",     ".View",     ".ViewShown",     ".DelayMs",          ".HistoryMs",
+        ".Target",   ".ShownHz",  ".Triggers", ".FramesLost",    ".FramesIncomplete", ".Cameras",
+        ".Degraded", ".Renderer", ".Screen",   ".ReleaseScreen", ".TakeScreen"})
     EXPECT_THAT(seen, HasSubstr(std::string(name) + " "));
   const std::string property = "get-property" + object + "org.kagami.Kagami1 ";
   EXPECT_EQ(outputOf(busctl + property + "View"), "u 7\n");
