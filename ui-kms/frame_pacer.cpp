@@ -33,8 +33,14 @@ void FramePacer::restart(double refresh_hz) RT_SAFE {
 }
 
 void FramePacer::onVblank(std::uint64_t vblank, rt::Timestamp stamp) RT_SAFE {
-  if (seen_ == 0 || vblank < vblank_) return begin(vblank, stamp);
+  if (vblank < vblank_) seen_ = 0;
+  if (seen_ == 0) {
+    vblank_ = vblank;
+    seen_ = 1;  // not trusted
+    return;
+  }
   if (vblank == vblank_) return;
+  if (seen_ == 1) return begin(vblank, stamp);
   const auto vblanks = static_cast<double>(vblank - vblank_);
   predict(vblanks);
   vblank_ = vblank;
@@ -61,7 +67,7 @@ void FramePacer::begin(std::uint64_t vblank, rt::Timestamp stamp) RT_SAFE {
   both_ = 0;
   period_ = unsure * unsure;
   far_off_ = 0;
-  seen_ = 1;
+  seen_ = 2;
 }
 
 /// The instant follows the period, which itself wanders: variances grow with the distance.

@@ -17,7 +17,8 @@ namespace ui {
 /// the stamps' jitter: the gains depend on the number of flips alone, from the best straight line
 /// through the first few to a memory of about 140 vblanks. A stamp that is off counts for three
 /// standard deviations at most. A vblank number that goes back, and several stamps in a row an
-/// eighth of a period and more off to the same side, are another mode: start anew.
+/// eighth of a period and more off to the same side, are another mode: start anew. The first stamp
+/// of all is not used: the flip that sets a mode has one that is milliseconds off.
 ///
 /// Threads  One: the display's caller. Pure: time is an argument.
 /// RT       RT safe.
@@ -39,7 +40,7 @@ class FramePacer {
   /// None before the first kKnownAfter vblanks after a start.
   [[nodiscard]] std::optional<hal::DisplayTiming> timing() const RT_SAFE;
 
-  static constexpr std::uint32_t kKnownAfter = 12;
+  static constexpr std::uint32_t kKnownAfter = 13;
 
  private:
   void begin(std::uint64_t vblank, rt::Timestamp stamp) RT_SAFE;
@@ -50,7 +51,7 @@ class FramePacer {
   rt::HighQuantile draw_;
 
   double nominal_ns_;
-  std::uint32_t seen_ = 0;    // since the start
+  std::uint32_t seen_ = 0;    // since the start, the first one included
   int far_off_ = 0;           // stamps in a row far off to one side, negative: early
   std::uint64_t vblank_ = 0;  // the newest
   rt::Timestamp at_;          // its estimated instant

@@ -28,10 +28,10 @@ std::uint64_t feed(FramePacer& pacer, SimulatedScreen& screen, std::uint64_t fro
   return from;
 }
 
-TEST(FramePacer, KnowsNothingBeforeTwelveVblanks) {
+TEST(FramePacer, KnowsNothingBeforeThirteenVblanks) {
   SimulatedScreen screen({}, 0, kStart, 1);
   FramePacer pacer(60);
-  std::uint64_t next = feed(pacer, screen, 100, 11);
+  std::uint64_t next = feed(pacer, screen, 100, 12);
   EXPECT_FALSE(pacer.timing().has_value());
   feed(pacer, screen, next, 1);
   EXPECT_TRUE(pacer.timing().has_value());
@@ -44,7 +44,7 @@ TEST(FramePacer, PredictsAnExactGridExactly) {
   for (const std::uint64_t vblank : {605u, 700u, 1205u})
     EXPECT_LE(std::abs(errorUs(pacer, screen, vblank)), 0.5) << vblank;
   EXPECT_NEAR(pacer.timing()->period_ns, 1e9 / 59.94, 1);
-  EXPECT_LE(pacer.timing()->stamp_jitter_ns, 2e3);
+  EXPECT_LE(pacer.timing()->stamp_jitter_ns, 3e3);
 }
 
 TEST(FramePacer, AveragesTheJitterOfStampsAndTellsIt) {
@@ -84,11 +84,22 @@ TEST(FramePacer, IsHardlyMovedByOneStampThatIsOff) {
   }
 }
 
-TEST(FramePacer, RecoversFromAFirstStampThatIsOff) {
+TEST(FramePacer, DoesNotTrustTheStampOfTheFlipThatSetTheMode) {
+  for (const Nanoseconds off : {Nanoseconds(1700us), Nanoseconds(-5ms), Nanoseconds(3s)}) {
+    SimulatedScreen screen({}, 0, kStart, 5);
+    FramePacer pacer(60);
+    pacer.onVblank(7, screen.truly(7) + off);
+    const std::uint64_t next = feed(pacer, screen, 8, 12);
+    EXPECT_LE(std::abs(errorUs(pacer, screen, next)), 1);
+  }
+}
+
+TEST(FramePacer, RecoversFromAnEarlyStampThatIsFarOff) {
   SimulatedScreen screen({}, 20e3, kStart, 5);
   FramePacer pacer(60);
-  pacer.onVblank(0, screen.truly(0) + 5ms);
-  const std::uint64_t next = feed(pacer, screen, 1, 40);
+  feed(pacer, screen, 0, 1);
+  pacer.onVblank(1, screen.truly(1) + 5ms);
+  const std::uint64_t next = feed(pacer, screen, 2, 40);
   EXPECT_LE(std::abs(errorUs(pacer, screen, next)), 40);
 }
 
@@ -105,7 +116,7 @@ TEST(FramePacer, StartsAnewWhenTheVblankNumberJumpsBack) {
   feed(pacer, after, 1000, 1);
   feed(pacer, after, 999, 1);  // nobody said restart()
   EXPECT_FALSE(pacer.timing().has_value());
-  feed(pacer, after, 1001, 11);
+  feed(pacer, after, 1001, 12);
   EXPECT_LE(std::abs(errorUs(pacer, after, 1020)), 1);
 }
 
