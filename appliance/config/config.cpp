@@ -139,8 +139,8 @@ void readHistory(Section section, Config::History& history) {
 
 void readDisplay(Section section, Config::Display& display) {
   section.word("backend", display.backend);
-  section.word("device", display.device);
-  section.word("mode", display.mode);
+  section.text("device", display.device);
+  section.text("mode", display.mode);
   section.integer("queue_depth", display.queue_depth, {1, 2, "pictures"});
   section.integer("width_px", display.width_px, {64, 7680, "px"});
   section.integer("height_px", display.height_px, {64, 4320, "px"});
