@@ -11,6 +11,11 @@ using namespace std::chrono_literals;
 /// An edge that takes longer than this, opto-isolators included, does not come.
 constexpr rt::Nanoseconds kLongestEdge = 20ms;
 
+/// The line may have come to rest only now, when it was opened: the loop-back is to follow first.
+/// One that never rests (an open input) is looked at all the same.
+constexpr rt::Nanoseconds kQuiet = 5ms;
+constexpr rt::Nanoseconds kLongestUnrest = 100ms;
+
 constexpr rt::Nanoseconds kStopPoll = 100ms;
 
 /// The kernel may show an edge before the trigger loop has posted it.
@@ -45,7 +50,8 @@ std::expected<void, std::string> checkLoopback(hal::TriggerLine& line, hal::Edge
     return std::unexpected(
         std::string("trigger: the loop-back cannot be checked: its line or the trigger's is gone"));
   };
-  while (input.waitEdge(0ns)) {
+  const rt::Timestamp patience = rt::now() + kLongestUnrest;
+  while (input.waitEdge(kQuiet) && rt::now() < patience) {
   }
   const auto before = input.isActive();
   if (!before || !line.setActive(true)) return unreadable();
