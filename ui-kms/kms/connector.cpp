@@ -1,7 +1,7 @@
 #include "ui-kms/kms/connector.h"
 
 #include <memory>
-#include <span>
+#include <utility>
 
 namespace ui::kms {
 namespace {
@@ -40,12 +40,15 @@ std::optional<Connector> readConnector(int fd, std::uint32_t id, Probe probe) {
 std::optional<Connector> findConnector(int fd, Probe probe) {
   const std::unique_ptr<drmModeRes, decltype(&drmModeFreeResources)> resources(
       drmModeGetResources(fd), &drmModeFreeResources);
-  if (!resources) return std::nullopt;
+  std::optional<Connector> without_modes;
+  if (!resources) return without_modes;
   for (const std::uint32_t id : listOf(resources->connectors, resources->count_connectors)) {
     auto connector = readConnector(fd, id, probe);
-    if (connector && connector->connected && !connector->modes.empty()) return connector;
+    if (!connector || !connector->connected) continue;
+    if (!connector->modes.empty()) return connector;
+    if (!without_modes) without_modes = std::move(connector);
   }
-  return std::nullopt;
+  return without_modes;
 }
 
 }  // namespace ui::kms

@@ -32,7 +32,7 @@ struct Connector {
 /// None: it vanished.
 [[nodiscard]] std::optional<Connector> readConnector(int fd, std::uint32_t id, Probe probe);
 
-/// The first one with a screen that people look at and that has a mode.
+/// The first one with a screen that people look at; one that offers modes goes first.
 [[nodiscard]] std::optional<Connector> findConnector(int fd, Probe probe);
 
 }  // namespace ui::kms

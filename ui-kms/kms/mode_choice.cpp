@@ -39,8 +39,11 @@ std::expected<std::optional<ModeWish>, std::string> parseModeWish(std::string_vi
   ModeWish wish;
   int end = 0;
   const auto whole = [&] { return end > 0 && static_cast<std::size_t>(end) == copy.size(); };
-  bool good = std::sscanf(copy.c_str(), "%5ux%5u%n", &wish.width_px, &wish.height_px, &end) == 2;
-  if (good && !whole()) {
+  // sscanf would take signs, spaces and nan.
+  const bool plain = copy.find_first_not_of("0123456789.x@") == std::string::npos;
+  bool good =
+      plain && std::sscanf(copy.c_str(), "%5ux%5u%n", &wish.width_px, &wish.height_px, &end) == 2;
+  if (plain && !whole()) {
     end = 0;
     good = std::sscanf(copy.c_str(), "%5ux%5u@%8lf%n", &wish.width_px, &wish.height_px,
                        &wish.refresh_hz, &end) == 3 &&

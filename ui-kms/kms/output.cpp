@@ -8,6 +8,8 @@
 
 #include <xf86drm.h>
 
+#include "ui-kms/kms/framebuffer.h"
+
 namespace ui::kms {
 namespace {
 
@@ -154,22 +156,44 @@ void Output::addDesirable(AtomicRequest& request) const {
   }
 }
 
-AtomicRequest::Outcome Output::light(const drmModeModeInfo& mode, std::uint32_t framebuffer,
-                                     int fence, std::uint64_t serial) const {
-  const ModeBlob blob(fd_, mode);
-  if (blob.id() == 0) return std::unexpected(EINVAL);
-  AtomicRequest::Outcome tested;
+/// The first of two requests that the driver would carry out: with what is only desirable, or
+/// without.
+std::expected<AtomicRequest, int> Output::lightingRequest(const drmModeModeInfo& mode,
+                                                          std::uint32_t mode_blob,
+                                                          std::uint32_t framebuffer,
+                                                          int fence) const {
+  int refused = EINVAL;
   for (const bool desirable : {true, false}) {
     AtomicRequest request;
     clear(request);
-    addMode(request, mode, blob.id());
+    addMode(request, mode, mode_blob);
     addPicture(request, framebuffer, fence);
     if (desirable) addDesirable(request);
-    tested = request.test(fd_, /*modeset=*/true);
-    if (tested) return request.submit(fd_, /*modeset=*/true, serial);
-    if (tested.error() != EINVAL && tested.error() != ERANGE) break;
+    const auto tested = request.test(fd_, /*modeset=*/true);
+    if (tested) return request;
+    refused = tested.error();
+    if (refused != EINVAL && refused != ERANGE) break;
   }
-  return tested;
+  return std::unexpected(refused);
+}
+
+AtomicRequest::Outcome Output::tryLight(const drmModeModeInfo& mode) const {
+  const auto memory = DumbBuffer::create(fd_, mode.hdisplay, mode.vdisplay);
+  if (!memory) return std::unexpected(memory.error());
+  const auto framebuffer = Framebuffer::create(fd_, memory->layout());
+  if (!framebuffer) return std::unexpected(framebuffer.error());
+  const ModeBlob blob(fd_, mode);
+  const auto request = lightingRequest(mode, blob.id(), framebuffer->id(), -1);
+  if (!request) return std::unexpected(request.error());
+  return {};
+}
+
+AtomicRequest::Outcome Output::light(const drmModeModeInfo& mode, std::uint32_t framebuffer,
+                                     int fence, std::uint64_t serial) const {
+  const ModeBlob blob(fd_, mode);
+  const auto request = lightingRequest(mode, blob.id(), framebuffer, fence);
+  if (!request) return std::unexpected(request.error());
+  return request->submit(fd_, /*modeset=*/true, serial);
 }
 
 AtomicRequest::Outcome Output::flip(std::uint32_t framebuffer, int fence,

@@ -32,6 +32,9 @@ class Output {
 
   [[nodiscard]] const Connector& connector() const { return connector_; }
 
+  /// Would the driver set @p mode, be it without what is only desirable? Changes nothing.
+  [[nodiscard]] AtomicRequest::Outcome tryLight(const drmModeModeInfo& mode) const;
+
   /// Sets @p mode and shows @p framebuffer, which has that mode's size; otherwise as flip().
   /// Tested first. What is only desirable (content type, colour range, underscan) is left out where
   /// the driver refuses the whole with it. Undoes what another program left behind.
@@ -56,6 +59,10 @@ class Output {
   void addMode(AtomicRequest& request, const drmModeModeInfo& mode, std::uint32_t mode_blob) const;
   void addPicture(AtomicRequest& request, std::uint32_t framebuffer, int fence) const;
   void addDesirable(AtomicRequest& request) const;
+  [[nodiscard]] std::expected<AtomicRequest, int> lightingRequest(const drmModeModeInfo& mode,
+                                                                  std::uint32_t mode_blob,
+                                                                  std::uint32_t framebuffer,
+                                                                  int fence) const;
 
   int fd_;
   Connector connector_;

@@ -1,6 +1,5 @@
 #include "ui-kms/kms/screen.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -58,24 +57,38 @@ void Screen::look(rt::Timestamp now) {
     machine_.onLook({.usable = false}, now);
     return;
   }
-  const auto ranked = rankModes(connector->modes, config_.trigger_hz, config_.mode);
   auto output = Output::find(device_->fd(), *connector);
-  if (ranked.empty() || !output) {
-    notice_ = output ? connector->name + ": the screen offers no mode" : output.error();
+  const auto mode = output ? firstPossible(*output) : std::nullopt;
+  if (!mode) {
+    notice_ = !output ? output.error()
+                      : connector->name +
+                            (connector->modes.empty() ? ": the screen offers no mode"
+                                                      : ": the driver refused every mode") +
+                            ": try another cable, port or screen";
     leaveOutput();
     machine_.onLook({.usable = false}, now);
     return;
   }
-  modes_ = ranked.size();
-  const drmModeModeInfo& mode = ranked[std::min(refused_modes_, ranked.size() - 1)];
-  const bool unchanged = same_connector && mode_ && sameTiming(*mode_, mode);
-  mode_ = mode;
+  const bool unchanged = same_connector && mode_ && sameTiming(*mode_, *mode);
+  mode_ = *mode;
   output_ = std::move(*output);
-  notice_ = config_.mode && !fulfils(mode, *config_.mode)
-                ? connector->name + " does not offer display.mode: shows " + describe(mode)
+  notice_ = config_.mode && !fulfils(*mode, *config_.mode)
+                ? connector->name + " does not offer display.mode: shows " + describe(*mode)
                 : std::string();
   machine_.onLook({.usable = true, .unchanged = unchanged, .link_good = connector->linkGood()},
                   now);
+}
+
+/// The best of the screen's modes that the driver can set, by its own word; that of a lit one needs
+/// no question.
+std::optional<drmModeModeInfo> Screen::firstPossible(const Output& output) const {
+  for (const drmModeModeInfo& mode :
+       rankModes(output.connector().modes, config_.trigger_hz, config_.mode)) {
+    if ((takesPictures() && mode_ && sameTiming(*mode_, mode)) || output.tryLight(mode)) {
+      return mode;
+    }
+  }
+  return std::nullopt;
 }
 
 void Screen::glance(rt::Timestamp now) {
@@ -88,7 +101,6 @@ void Screen::glance(rt::Timestamp now) {
 void Screen::leaveOutput() {
   if (output_ && machine_.master()) static_cast<void>(output_->darken());
   output_.reset();
-  refused_modes_ = 0;
 }
 
 void Screen::readFlips(std::vector<FlipEvent>& flips) {
@@ -125,10 +137,9 @@ rt::Error Screen::onFailure(int error, rt::Timestamp now) {
     default:
       break;
   }
-  if (machine_.state() == ScreenMachine::State::kLighting && ++refused_modes_ >= modes_) {
-    refused_modes_ = 0;
+  if (machine_.state() == ScreenMachine::State::kLighting) {
     machine_.onRefused(now);
-    notice_ = output_->connector().name + ": the driver refused every mode (" +
+    notice_ = output_->connector().name + ": the driver refused " + describe(*mode_) + " (" +
               std::strerror(error) + "): try another cable, port or display.mode";
   } else {
     machine_.onConfused(now);

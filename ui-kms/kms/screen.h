@@ -82,6 +82,7 @@ class Screen {
   void look(rt::Timestamp now);
   void glance(rt::Timestamp now);
   [[nodiscard]] std::optional<Connector> seek() const;
+  [[nodiscard]] std::optional<drmModeModeInfo> firstPossible(const Output& output) const;
   void leaveOutput();
   [[nodiscard]] rt::Error onFailure(int error, rt::Timestamp now);
 
@@ -91,9 +92,7 @@ class Screen {
   ScreenMachine machine_;
   std::optional<Output> output_;
   std::optional<drmModeModeInfo> mode_;
-  std::size_t refused_modes_ = 0;  // of this screen, in rankModes()'s order
-  std::size_t modes_ = 0;          // of this screen
-  std::string notice_;             // what is less than wished for, or what was wrong
+  std::string notice_;  // what is less than wished for, or what was wrong
 };
 
 }  // namespace ui::kms
