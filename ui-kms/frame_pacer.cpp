@@ -16,8 +16,9 @@ constexpr double kLeastJitter_ns = 2e3;
 constexpr double kJitterMemory = 64;      // stamps
 constexpr double kFirstJitterWeight = 4;  // stamps
 constexpr double kMostSigmas = 3;
-constexpr double kFarOff = 0.125;  // periods
-constexpr int kFarOffInARow = 8;   // once known; before, two that disagree are enough
+constexpr double kMostOffNominal = 0.05;  // relative: no screen is, so the stamps were nonsense
+constexpr double kFarOff = 0.125;         // periods
+constexpr int kFarOffInARow = 8;          // once known; before, two that disagree are enough
 
 }  // namespace
 
@@ -54,6 +55,7 @@ void FramePacer::onVblank(std::uint64_t vblank, rt::Timestamp stamp) RT_SAFE {
   const int enough = seen_ < kKnownAfter ? 1 : kFarOffInARow;
   if (std::abs(far_off_) >= enough) return begin(vblank, stamp);
   correct(innovation_ns);
+  if (std::abs(period_ns_ / nominal_ns_ - 1) > kMostOffNominal) return begin(vblank, stamp);
   ++seen_;
 }
 

@@ -24,7 +24,7 @@ namespace ui {
 /// RT       RT safe.
 class FramePacer {
  public:
-  /// @p refresh_hz: the mode's, the first guess; right within a few per cent, above 0.
+  /// @p refresh_hz: the mode's, the first guess; right within 5 %, above 0.
   /// @p commit_margin: how long before a vblank the screen wants its commit.
   explicit FramePacer(double refresh_hz, rt::Nanoseconds commit_margin = {});
 

@@ -41,7 +41,7 @@ GenlockReason Genlock::obstacle(rt::Timestamp deadline) const RT_SAFE {
   if (!timing || deadline - timing->at > kHoldOver) return GenlockReason::kNoVblanks;
   const double vblanks = static_cast<double>(parameters_.period.count()) / timing->period_ns;
   const double whole = std::round(vblanks);
-  if (whole < 1 || std::abs(vblanks / whole - 1) > kMostMistuned) return GenlockReason::kRatio;
+  if (whole < 1 || std::abs(whole / vblanks - 1) > kMostMistuned) return GenlockReason::kRatio;
   if (input_.ready_delay == 0ns) return GenlockReason::kNoFrames;
   return GenlockReason::kNone;
 }

@@ -38,7 +38,7 @@ class Genlock {
     rt::Nanoseconds margin;  ///< frame_ready to the latest start of its warp
   };
 
-  static constexpr double kMostMistuned = 0.005;  ///< refresh / rate from a whole number, relative
+  static constexpr double kMostMistuned = 0.005;  ///< n vblanks from the configured period, relative
   static constexpr double kMostSlew = 0.01;       ///< of a period, per trigger
   static constexpr rt::Nanoseconds kHoldOver = std::chrono::seconds(60);
 

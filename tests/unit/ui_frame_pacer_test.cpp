@@ -73,6 +73,19 @@ TEST(FramePacer, LosesNothingButTimeWhenEventsAreLost) {
   EXPECT_LE(std::abs(errorUs(pacer, screen, next + 300)), 30);
 }
 
+TEST(FramePacer, KnowsThePhaseStillAfterAMinuteOfSilence) {
+  double squares = 0;
+  constexpr std::uint32_t kScreens = 100;
+  for (std::uint32_t seed = 1; seed <= kScreens; ++seed) {
+    SimulatedScreen screen({.nominal_hz = 60, .off_ppm = 100}, 50e3, kStart, seed);
+    FramePacer pacer(60);
+    const std::uint64_t next = feed(pacer, screen, 0, 1200);
+    const double error = errorUs(pacer, screen, next + 3600);
+    squares += error * error;
+  }
+  EXPECT_LE(std::sqrt(squares / kScreens), 150);
+}
+
 TEST(FramePacer, IsHardlyMovedByOneStampThatIsOff) {
   for (const Nanoseconds off : {Nanoseconds(3ms), Nanoseconds(-3ms), Nanoseconds(400us)}) {
     SimulatedScreen screen({}, 20e3, kStart, 4);
