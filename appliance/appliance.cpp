@@ -402,6 +402,10 @@ Status Appliance::status() const {
                 .screen = render.screen.state,
                 .screen_message = render.screen.message.data(),
                 .source_path = source_path_};
+  if (trigger_loop_->failing()) {
+    status.degraded.emplace_back(
+        "trigger: pulses do not leave: the line's device is gone: check it, then restart");
+  }
   if (panel_loop_ && panel_loop_->lost()) {
     status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");
   }

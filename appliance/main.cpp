@@ -17,6 +17,7 @@
 #include "appliance/camera_watch.h"
 #include "appliance/config/config.h"
 #include "appliance/control/control_server.h"
+#include "appliance/degraded_watch.h"
 #include "appliance/genlock_watch.h"
 #include "appliance/geometry/rig_file.h"
 #include "appliance/log.h"
@@ -148,6 +149,7 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
   constexpr rt::Nanoseconds kTick = std::chrono::milliseconds(100);
   auto control = openControl(config, running);
   CameraWatch watch;
+  DegradedWatch degraded_watch(running.status().degraded);
   GenlockWatch genlock_watch;
   ScreenWatch screen_watch;
   sd_notify(0, "READY=1");
@@ -163,6 +165,7 @@ void serve(Appliance& running, const Config::Control& config, StopSignals& stop)
     }
     const Status status = running.status();
     for (const std::string& line : watch.look(status, rt::now())) logWarning(line);
+    for (const std::string& line : degraded_watch.look(status)) logWarning(line);
     if (const auto line = genlock_watch.look(status)) logInfo(*line);
     if (const auto line = screen_watch.look(status)) logWarning(*line);
     sd_notify(0, "WATCHDOG=1");

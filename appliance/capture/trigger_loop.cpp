@@ -25,11 +25,8 @@ void TriggerLoop::run(const std::stop_token& stop) noexcept {
 }
 
 void TriggerLoop::pulse(rt::Timestamp deadline) noexcept {
-  const auto edge = line_.setActive(true);
-  if (!edge) {
-    failed_.store(failed() + 1, std::memory_order_relaxed);
-    return;
-  }
+  const auto edge = drive(true);
+  if (!edge) return;
   // The board before anything else: the first packets are only an exposure away.
   edges_.post(++trigger_, edge->before);
   if (trace_ != nullptr) {
@@ -39,7 +36,14 @@ void TriggerLoop::pulse(rt::Timestamp deadline) noexcept {
                                  .trigger_edge_after = edge->after});
   }
   rt::sleepUntil(edge->before + timing_.pulse_width);
-  if (!line_.setActive(false)) failed_.store(failed() + 1, std::memory_order_relaxed);
+  (void)drive(false);  // counted
+}
+
+rt::Result<hal::TriggerEdge> TriggerLoop::drive(bool active) noexcept {
+  const auto edge = line_.setActive(active);
+  failing_.store(!edge, std::memory_order_relaxed);
+  if (!edge) failed_.store(failed() + 1, std::memory_order_relaxed);
+  return edge;
 }
 
 void TriggerLoop::steer(rt::PeriodicSchedule& schedule) noexcept {

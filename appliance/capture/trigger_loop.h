@@ -47,11 +47,14 @@ class TriggerLoop {
 
   /// Pulses given up because the thread woke too late.
   [[nodiscard]] std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }
-  /// Pulses that the line did not take.
+  /// Edges that the line did not take.
   [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
+  /// Whether the newest edge was one of them.
+  [[nodiscard]] bool failing() const { return failing_.load(std::memory_order_relaxed); }
 
  private:
   void pulse(rt::Timestamp deadline) noexcept;
+  [[nodiscard]] rt::Result<hal::TriggerEdge> drive(bool active) noexcept;
   void steer(rt::PeriodicSchedule& schedule) noexcept;
   void recordGenlock() noexcept;
 
@@ -66,6 +69,7 @@ class TriggerLoop {
   std::uint64_t trigger_ = 0;
   std::atomic<std::uint64_t> missed_{0};
   std::atomic<std::uint64_t> failed_{0};
+  std::atomic<bool> failing_{false};
 };
 
 }  // namespace appliance

@@ -133,6 +133,17 @@ TEST_F(WiredDaemon, MeasuresItsEdgesAndLightsTheLampOfTheMode) {
   EXPECT_EQ(records["summary"].front()["frames_unattributed"], 0);
 }
 
+TEST_F(WiredDaemon, TellsOnceThatItsPanelWasUnplugged) {
+  start();
+  if (HasFatalFailure()) return;
+  panel_.remove();
+  ASSERT_TRUE(daemon_->waitForOutput("panel: its GPIO chip is gone", 60s)) << daemon_->output();
+  std::this_thread::sleep_for(1s);
+  const std::string output = daemon_->output();
+  EXPECT_EQ(output.find("its GPIO chip is gone"), output.rfind("its GPIO chip is gone"));
+  EXPECT_GT(stop()["frame"].size(), 10U);
+}
+
 TEST_F(WiredDaemon, RunsOnWithWrongPolarityAndSaysSo) {
   start({"trigger.loopback_active_low=true"});
   if (HasFatalFailure()) return;

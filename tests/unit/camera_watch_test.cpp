@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "appliance/degraded_watch.h"
+
 namespace {
 
 using appliance::CameraState;
@@ -117,6 +119,15 @@ TEST(CameraWatch, DoesNotCountWhatIsLostBeforeACameraStreams) {
   EXPECT_THAT(watch.look(status, rt::fromNs(1'000'000'000)), IsEmpty());
   status.cameras[0].state = CameraState::kStreaming;
   EXPECT_THAT(watch.look(status, rt::fromNs(1'100'000'000)), IsEmpty());
+}
+
+TEST(DegradedWatch, TellsEachLineOnceAndNoneOfTheStart) {
+  appliance::DegradedWatch watch({"no real-time priority"});
+  EXPECT_TRUE(watch.look({.degraded = {"no real-time priority"}}).empty());
+  EXPECT_THAT(watch.look({.degraded = {"no real-time priority", "panel: gone"}}),
+              ElementsAre("panel: gone"));
+  EXPECT_TRUE(watch.look({}).empty());
+  EXPECT_TRUE(watch.look({.degraded = {"panel: gone"}}).empty());
 }
 
 }  // namespace
