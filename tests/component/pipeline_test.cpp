@@ -175,6 +175,16 @@ TEST(Pipeline, KeepsTheOrderOfInstantsInEveryPicture) {
   }
 }
 
+TEST(Pipeline, SaysHowFramesReachTheRendererForTheRunAndForEachPicture) {
+  const PipelineRun& run = throughAllModes();
+  const std::string path = run.records.at("run").front()["source_path"];
+  const std::string why = "upload: ";
+  EXPECT_TRUE(path == "dma-buf" || (path.starts_with(why) && path.size() > why.size())) << path;
+  for (const json& picture : run.records.at("picture")) {
+    EXPECT_EQ(picture["imported"], path == "dma-buf" && picture["trigger"] != 0) << picture;
+  }
+}
+
 TEST(Pipeline, RunsOnlyTheThreadsOfTheThreadTable) {
   const PipelineRun& run = throughAllModes();
   const std::map<std::string, test::TableRow> table = test::readThreadTable(KAGAMI_THREAD_TABLE);
