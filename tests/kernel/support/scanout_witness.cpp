@@ -10,8 +10,6 @@
 #include <thread>
 
 #include <fcntl.h>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <xf86drm.h>
@@ -161,20 +159,6 @@ std::optional<WitnessedScanout> ScanoutWitness::read(std::chrono::milliseconds t
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return std::nullopt;
-}
-
-void writePng(const WitnessedScanout& picture, const std::string& path) {
-  cv::Mat image(static_cast<int>(picture.height_px), static_cast<int>(picture.width_px), CV_8UC3);
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.cols; ++column) {
-      const std::uint32_t pixel = picture.pixels[static_cast<std::size_t>(row) * picture.width_px +
-                                                 static_cast<std::size_t>(column)];
-      image.at<cv::Vec3b>(row, column) = {static_cast<unsigned char>(pixel),
-                                          static_cast<unsigned char>(pixel >> 8),
-                                          static_cast<unsigned char>(pixel >> 16)};
-    }
-  }
-  if (!cv::imwrite(path, image)) throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace test

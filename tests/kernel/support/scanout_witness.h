@@ -26,13 +26,14 @@ struct WitnessedScanout {
 /// Errors   Throws std::runtime_error with what the kernel refused.
 class ScanoutWitness {
  public:
+  /// Once something is shown: a dark screen has no checksums.
   explicit ScanoutWitness(const std::string& card = "/dev/dri/card0");
   ~ScanoutWitness();
   ScanoutWitness(const ScanoutWitness&) = delete;
   ScanoutWitness& operator=(const ScanoutWitness&) = delete;
 
-  /// A picture that is on the screen now; nothing when the screen is dark, or when pictures change
-  /// so fast that none could be copied whole before @p timeout.
+  /// A picture that is on the screen now; nothing when the screen went dark, or when pictures
+  /// change so fast that none could be copied whole before @p timeout.
   [[nodiscard]] std::optional<WitnessedScanout> read(std::chrono::milliseconds timeout);
 
  private:
@@ -61,8 +62,5 @@ class ScanoutWitness {
 /// The checksum that VKMS makes of a frame: CRC-32 (reflected 0x04c11db7, from 0, not inverted)
 /// over alpha, red, green, blue of 16 bits each.
 [[nodiscard]] std::uint32_t vkmsChecksum(std::span<const std::uint32_t> pixels);
-
-/// Keeps it for people.
-void writePng(const WitnessedScanout& picture, const std::string& path);
 
 }  // namespace test
