@@ -1,0 +1,60 @@
+#include "appliance/tools/status_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "appliance/control/status.h"
+
+namespace {
+
+using appliance::GenlockReason;
+using appliance::GenlockState;
+using appliance::Status;
+using testing::HasSubstr;
+using testing::Not;
+
+Status someStatus() {
+  Status status;
+  status.genlock = {.state = GenlockState::kLocked,
+                    .hold_over = true,
+                    .vblanks_per_trigger = 2,
+                    .phase_error = rt::Nanoseconds(-1500),
+                    .phase_error_rms_ns = 6400,
+                    .lead = std::chrono::microseconds(25040),
+                    .vblank_period_ns = 12.5e6};
+  status.genlock_text = "locked: as it should";
+  status.renderer = "a test";
+  return status;
+}
+
+TEST(Status, TellsTheGenlockInNumbersWithUnits) {
+  Status status = someStatus();
+  status.genlock.unlocks = 3;
+  status.genlock.last_unlock = GenlockReason::kPhaseLost;
+  const auto genlock = nlohmann::json::parse(appliance::toJson(status)).at("genlock");
+  EXPECT_EQ(genlock.at("state"), "locked");
+  EXPECT_EQ(genlock.at("reason"), "none");
+  EXPECT_EQ(genlock.at("text"), "locked: as it should");
+  EXPECT_EQ(genlock.at("hold_over"), true);
+  EXPECT_EQ(genlock.at("vblanks_per_trigger"), 2);
+  EXPECT_DOUBLE_EQ(genlock.at("phase_error_us").get<double>(), -1.5);
+  EXPECT_DOUBLE_EQ(genlock.at("phase_error_rms_us").get<double>(), 6.4);
+  EXPECT_DOUBLE_EQ(genlock.at("lead_ms").get<double>(), 25.04);
+  EXPECT_EQ(genlock.at("unlocks"), 3);
+  EXPECT_EQ(genlock.at("last_unlock"), "phase_lost");
+}
+
+TEST(StatusText, HasALineForTheGenlockAndItsLosses) {
+  Status status = someStatus();
+  const auto text = appliance::statusText(appliance::toJson(status));
+  ASSERT_TRUE(text.has_value()) << text.error();
+  EXPECT_THAT(*text, HasSubstr("genlock  locked: as it should\n"));
+  EXPECT_THAT(*text, Not(HasSubstr("lost 0 times")));
+  status.genlock.unlocks = 3;
+  status.genlock.last_unlock = GenlockReason::kNoVblanks;
+  EXPECT_THAT(*appliance::statusText(appliance::toJson(status)),
+              HasSubstr("; lost 3 times, the last by no_vblanks\n"));
+}
+
+}  // namespace
