@@ -123,8 +123,8 @@ std::expected<Claim<N>, std::string> claimLines(const LineList& list, const std:
     claim.requests.push_back(std::move(*request));
     const ListedLine& first = lines.front();
     if (!first.bus.empty())
-      claim.notes.push_back(key + ": \"" + first.name + "\" is behind an " + first.bus +
-                            " expander: the panel works, its instants are late");
+      claim.notes.push_back(key + ": \"" + first.name + "\" is behind an expander on the bus " +
+                            first.bus + ": the panel works, its instants are late");
   }
   return claim;
 }
@@ -137,8 +137,9 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::expected<OpenedPanel, std::string> openButtonPanel(const PanelSettings& settings) {
-  const LineList list = listLines();
+std::expected<OpenedPanel, std::string> openButtonPanel(const PanelSettings& settings,
+                                                        const std::filesystem::path& sysfs) {
+  const LineList list = listLines(sysfs);
   ::gpiod::line_settings contact;
   contact.set_direction(::gpiod::line::direction::INPUT)
       .set_edge_detection(::gpiod::line::edge::BOTH)

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <expected>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,7 +34,8 @@ struct OpenedPanel {
 /// Errors   No button at all, a name that exists twice, or a line that somebody holds. Missing
 ///          single buttons and missing lamps are notes. While running: when a chip goes, alive()
 ///          turns false, its buttons are not pressed and its lamps stay as they are.
+/// @p sysfs where the kernel's device tree is; another folder in tests.
 [[nodiscard]] std::expected<OpenedPanel, std::string> openButtonPanel(
-    const PanelSettings& settings);
+    const PanelSettings& settings, const std::filesystem::path& sysfs = "/sys");
 
 }  // namespace hal::gpiod

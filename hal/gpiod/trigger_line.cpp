@@ -61,9 +61,10 @@ std::expected<std::vector<ListedLine>, std::string> findTriggerLines(
     if (!line) return std::unexpected(std::move(line.error()));
     if (!line->bus.empty())
       return std::unexpected(std::string(kKey) + ": GPIO line \"" + name + "\" on " + line->chip +
-                             " (" + line->chip_label + ") is behind an " + line->bus +
-                             " expander, whose edges come late and unevenly: wire the trigger to "
-                             "a line of the board itself");
+                             " (" + line->chip_label + ") is behind an expander on the bus " +
+                             line->bus +
+                             ", whose edges come late and unevenly: wire the trigger to a line of "
+                             "the board itself");
     if (std::ranges::find(lines, name, &ListedLine::name) != lines.end())
       return std::unexpected(std::string(kKey) + ": \"" + name +
                              "\" stands twice: name every line once");

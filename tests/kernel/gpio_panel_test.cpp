@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "rt/periodic_loop.h"
 #include "tests/conformance/button_panel_suite.h"
 #include "tests/kernel/support/gpio_sim.h"
+#include "tests/support/device_tree.h"
 #include "tests/support/panel_gestures.h"
 
 namespace test {
@@ -235,6 +237,19 @@ TEST(GpioPanel, WorksWithSomeButtonsAndNamesTheOthers) {
                                                       Not(HasSubstr("\"button-live\"")),
                                                       HasSubstr("these buttons are not there"))));
   EXPECT_FALSE(panel.panel->isPressed(Button::kSweep));
+}
+
+TEST(GpioPanel, WorksBehindAnExpanderAndSaysSo) {
+  const SimPanel sim;
+  const DeviceTree tree;
+  tree.add("usb1/1-2", "usb");
+  tree.addChip("usb1/1-2", std::filesystem::path(sim.chip.path()).filename());
+  const auto panel = openButtonPanel({}, tree.root());
+  ASSERT_TRUE(panel.has_value()) << panel.error();
+  EXPECT_THAT(panel->notes,
+              Contains(AllOf(HasSubstr("button-live"), HasSubstr("expander on the bus usb"))));
+  sim.contact(Button::kLive, true);
+  EXPECT_TRUE(panel->panel->waitEvent(1s).has_value());
 }
 
 TEST(GpioPanel, RefusesAPanelWithoutAnyButton) {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <deque>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <string>
@@ -19,6 +20,7 @@
 #include "tests/kernel/support/gpio_sim.h"
 #include "tests/kernel/support/gpio_trace.h"
 #include "tests/support/child_process.h"
+#include "tests/support/device_tree.h"
 
 // Counts what the C++ library and libgpiod allocate: the trigger loop must never do so.
 namespace {
@@ -155,6 +157,17 @@ TEST(GpioTriggerLine, TellsAChipThatIsGone) {
   const auto edge = (*line)->setActive(true);
   ASSERT_FALSE(edge);
   EXPECT_EQ(edge.error().code, rt::Errc::kDeviceLost);
+}
+
+TEST(GpioTriggerLine, RefusesALineBehindAnExpanderAndClaimsNothing) {
+  const GpioSim chip("board", {"TRIGGER"});
+  const DeviceTree tree;
+  tree.add("i2c-1/1-0020", "i2c");
+  tree.addChip("i2c-1/1-0020", std::filesystem::path(chip.path()).filename());
+  const auto line = openTriggerLine({.lines = {"TRIGGER"}}, tree.root());
+  ASSERT_FALSE(line);
+  EXPECT_THAT(line.error(), HasSubstr("is behind an expander on the bus i2c"));
+  EXPECT_EQ(faultOf({"TRIGGER"}), "no fault");
 }
 
 TEST(GpioTriggerLine, SaysInOneLineWhatIsWrongWithItsNames) {

@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -7,7 +6,7 @@
 #include "hal/gpiod/expander.h"
 #include "hal/gpiod/line_finder.h"
 #include "hal/gpiod/trigger_line.h"
-#include "tests/support/child_process.h"
+#include "tests/support/device_tree.h"
 
 namespace {
 
@@ -15,6 +14,7 @@ using hal::gpiod::expanderBus;
 using hal::gpiod::findLine;
 using hal::gpiod::findOptionalLine;
 using hal::gpiod::LineList;
+using test::DeviceTree;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -79,31 +79,6 @@ TEST(LineFinder, AnOptionalLineMayBeMissing) {
   ASSERT_TRUE(line.has_value());
   EXPECT_FALSE(line->has_value());
 }
-
-/// The kernel's device tree as a folder: what it would show for chips on several buses.
-class DeviceTree {
- public:
-  DeviceTree() {
-    for (const char* bus : {"i2c", "spi", "usb", "gpio", "pci", "platform"})
-      std::filesystem::create_directories(root() / "bus" / bus / "devices");
-  }
-  /// A device at @p path under /devices, of bus @p bus.
-  void add(const std::string& path, const std::string& bus) const {
-    const auto folder = root() / "devices" / path;
-    std::filesystem::create_directories(folder);
-    std::filesystem::create_symlink(root() / "bus" / bus, folder / "subsystem");
-  }
-  /// A GPIO chip as the child of the device at @p parent.
-  void addChip(const std::string& parent, const std::string& chip) const {
-    add(parent + "/" + chip, "gpio");
-    std::filesystem::create_symlink("../../../devices/" + parent + "/" + chip,
-                                    root() / "bus/gpio/devices" / chip);
-  }
-  [[nodiscard]] std::filesystem::path root() const { return folder_ / "sys"; }
-
- private:
-  test::TemporaryFolder folder_;
-};
 
 TEST(Expander, AChipOfTheBoardHangsOnNoBus) {
   const DeviceTree tree;
