@@ -72,6 +72,7 @@ struct RenderParameters {
 /// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
 ///          monitored, not RT safe. It pins at most one frame at a time. It stands above receiving
 ///          and keeps to an allowance, so that capture has 40 % of every CPU.
+///          While triggers are locked, a picture that would come a vblank early waits.
 class RenderLoop {
  public:
   RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
