@@ -97,7 +97,7 @@ TEST(GpioTrace, KeepsTheTimeAcrossLongPauses) {
   const std::vector<test::GpioEvent> edges = test::outputEdges(trace.take(), number, false);
   ASSERT_EQ(edges.size(), 3U);
   const std::int64_t hour_ns = std::chrono::nanoseconds(1h).count();
-  for (int i = 1; i < 3; ++i) {
+  for (std::size_t i = 1; i < 3; ++i) {
     EXPECT_NEAR(static_cast<double>(edges[i].time_ns - edges[i - 1].time_ns),
                 static_cast<double>(hour_ns), 1e9);
   }
