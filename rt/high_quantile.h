@@ -9,9 +9,9 @@
 
 namespace rt {
 
-/// How long something nearly always takes: the duration that all but 2 % of the last 128 did not
-/// exceed. A change is known in full after 126 durations; a single slow one counts for nothing
-/// once there are 50.
+/// How long something nearly always takes: the duration that all but 5 % of the last 128 did not
+/// exceed. A change is known in full after 122 durations; a single slow one counts for nothing
+/// once there are 20.
 ///
 /// Threads  One.
 /// RT       RT safe. high() selects among 128 numbers: microseconds, not for every packet.
@@ -38,7 +38,7 @@ class HighQuantile {
 
  private:
   static constexpr std::size_t kKept = 128;
-  static constexpr std::size_t kPerCent = 98;
+  static constexpr std::size_t kPerCent = 95;
   std::array<Nanoseconds, kKept> durations_{};
   std::size_t next_ = 0;
   std::size_t count_ = 0;
