@@ -14,6 +14,8 @@ namespace {
 // A frame may wait in its socket for three periods: one of them at most is the pictures'.
 constexpr double kShareOfPictures = 0.6;
 constexpr std::size_t kReadyKnownAfter = 8;  // frames
+constexpr rt::Nanoseconds kRetry = std::chrono::milliseconds(1);
+constexpr rt::Nanoseconds kFlipIsTold = std::chrono::microseconds(200);  // after its vblank
 
 hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
                           hal::PixelFormat format) {
@@ -39,8 +41,9 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
     const rt::Timestamp period_later = rt::now() + parameters_.trigger_period;
-    (void)parts_.board.frame_ready.waitUntil(
-        std::min(parts_.display.nextCall().value_or(period_later), period_later));
+    const rt::Timestamp again = std::min(parts_.display.nextCall().value_or(period_later),
+                                         retry_at_.value_or(period_later));
+    (void)parts_.board.frame_ready.waitUntil(std::min(again, period_later));
     rt::sleepUntil(allowance_.nextBegin());
     turn();
   }
@@ -50,6 +53,7 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
 
 void RenderLoop::turn() noexcept {
   const rt::Timestamp wake = rt::now();
+  retry_at_.reset();
   takeCommands();
   Wanted wanted;
   wanted.shot = director_.tick(wake, parameters_.trigger_period, stored_,
@@ -106,13 +110,20 @@ bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
          wanted.line.view() == on_screen_.line.view() && wanted.target == on_screen_.target;
 }
 
-/// A live picture's vblank is not taken away from it by one that shows the same moment again: what
-/// that one would tell, the next one tells with the same vblank.
-bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) const noexcept {
+/// A live picture's vblank is not taken away from it by an older one: not by one that shows the
+/// same moment again, for what that would tell the next one tells with the same vblank, and not by
+/// one that came too late for its own. A new moment is held back once in a row at most, so that
+/// something is shown however late all of them are.
+bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept {
   const Shot& shot = wanted.shot;
-  if (!locked_ || stale_ || shot.mode != Mode::kLive || shot.trigger != on_screen_.shot.trigger)
+  const bool is_new = shot.trigger != on_screen_.shot.trigger;
+  if (!locked_ || stale_ || shot.mode != Mode::kLive || (is_new && held_back_) ||
+      locked_->redrawFits(now, parts_.board.edges.edge(shot.trigger))) {
+    held_back_ = false;
     return true;
-  return locked_->redrawFits(now, parts_.board.edges.edge(shot.trigger));
+  }
+  held_back_ = is_new;
+  return false;
 }
 
 bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
@@ -156,6 +167,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
                             : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));
   if (!commit) {
     ++counters_.skipped;
+    if (commit.error().code == rt::Errc::kBusy) retry_at_ = nextFlip();
     return false;
   }
   allowance_.spend(wake, drawn_at);
@@ -172,6 +184,14 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     parts_.observer->onPicture({.record = record, .plan = plan ? &*plan : nullptr});
   }
   return true;
+}
+
+/// When a picture that found the one before still on its way can be tried again.
+rt::Timestamp RenderLoop::nextFlip() const noexcept {
+  const rt::Timestamp now = rt::now();
+  const auto timing = parts_.display.timing();
+  if (!timing) return now + kRetry;
+  return timing->vblankAt(timing->firstVblankAfter(now)) + kFlipIsTold;
 }
 
 void RenderLoop::noteReady(const StoredFrame& frame) noexcept {
