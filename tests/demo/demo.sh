@@ -197,6 +197,7 @@ file = "$1/rig.toml"
 addresses = [$addresses]
 [trigger]
 rate_hz = $2
+genlock = false  # nobody sees this screen's vblanks, and a wait for them would count as work
 [display]
 width_px = ${picture%x*}
 height_px = ${picture#*x}
