@@ -34,8 +34,7 @@ std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
   return renderer;
 }
 
-std::expected<void, std::string> Renderer::resize(std::uint32_t width_px,
-                                                  std::uint32_t height_px) {
+std::expected<void, std::string> Renderer::resize(std::uint32_t width_px, std::uint32_t height_px) {
   auto warp = WarpPass::create(width_px, height_px);
   if (!warp) return std::unexpected(warp.error());
   warp_ = std::move(*warp);

@@ -13,8 +13,8 @@
 namespace ui {
 
 /// What a buffer is for, and who moves it there: render() draws a free one, commit() makes it
-/// pending, the vblank puts it on screen and frees the one before. Queued: committed, but one before
-/// it is pending still.
+/// pending, the vblank puts it on screen and frees the one before. Queued: committed, but one
+/// before it is pending still.
 enum class BufferState : std::uint8_t { kFree, kDrawn, kQueued, kPending, kOnScreen };
 
 /// The life of the buffers of one screen. Pure: time is an argument, and what happened at vblanks

@@ -38,8 +38,9 @@ class Genlock {
     rt::Nanoseconds margin;  ///< frame_ready to the latest start of its warp
   };
 
-  static constexpr double kMostMistuned = 0.005;  ///< n vblanks from the configured period, relative
-  static constexpr double kMostSlew = 0.01;       ///< of a period, per trigger
+  static constexpr double kMostMistuned =
+      0.005;                                 ///< n vblanks from the configured period, relative
+  static constexpr double kMostSlew = 0.01;  ///< of a period, per trigger
   static constexpr rt::Nanoseconds kHoldOver = std::chrono::seconds(60);
 
   explicit Genlock(const Parameters& parameters);

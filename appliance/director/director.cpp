@@ -37,7 +37,8 @@ rt::Nanoseconds rungBelow(Ladder ladder, rt::Nanoseconds delay, rt::Nanoseconds 
 /// Goes on to another moment, for which the view of the sweep's start is the one to see.
 bool leavesTheMoment(Command::Kind kind) {
   using enum Command::Kind;
-  return kind == kGoLive || kind == kHome || kind == kDelayLess || kind == kDelayMore || kind == kSetDelay;
+  return kind == kGoLive || kind == kHome || kind == kDelayLess || kind == kDelayMore ||
+         kind == kSetDelay;
 }
 
 }  // namespace

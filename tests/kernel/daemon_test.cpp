@@ -234,4 +234,24 @@ TEST(WholeBox, GetsAValidReport) {
   EXPECT_EQ(run.figures["frames_misattributed"], 0);
 }
 
+TEST(WholeBox, GivesEveryLockedPictureItsVblank) {
+  const DaemonRun& run = throughAllModes();
+  ASSERT_EQ(run.report_exit, 0) << run.report_output;
+  EXPECT_EQ(run.figures["genlock"]["state"], "locked");
+  EXPECT_TRUE(run.figures["genlock"]["unlocks"].empty());
+  std::vector<int> pictures;
+  for (const auto& [vblanks, count] :
+       run.figures["genlock"]["trigger_to_flip_vblanks"]["histogram"].items()) {
+    pictures.push_back(count.get<int>());
+  }
+  ASSERT_FALSE(pictures.empty());
+  const int usual = std::ranges::max(pictures);
+  int all = 0;
+  for (const int count : pictures) all += count;
+  EXPECT_GE(usual, 20);
+  // A press into live is answered at once, by a moment that had its vblank already.
+  constexpr int kPressesIntoLive = 2;
+  EXPECT_LE(all - usual, kPressesIntoLive) << run.figures["genlock"].dump(1);
+}
+
 }  // namespace
