@@ -9,7 +9,6 @@ namespace {
 
 using appliance::GenlockReason;
 using appliance::GenlockState;
-using appliance::GenlockStatus;
 using appliance::genlockText;
 using appliance::GenlockWatch;
 using appliance::Status;
