@@ -116,7 +116,7 @@ class Display {
   [[nodiscard]] virtual std::optional<DisplayTiming> timing() const = 0;
 
   /// When the display is to be called next, whether there is a picture or not, so that one that
-  /// was committed early is not held up. None: whenever.
+  /// was committed early, or was refused with kBusy, is not held up. None: whenever.
   [[nodiscard]] virtual std::optional<rt::Timestamp> nextCall() const = 0;
 
   [[nodiscard]] virtual ScreenStatus screen() const = 0;

@@ -244,7 +244,8 @@ std::optional<hal::DisplayTiming> KmsDisplay::timing() const {
 }
 
 std::optional<rt::Timestamp> KmsDisplay::nextCall() const {
-  if (!queue_.queued()) return std::nullopt;
+  const bool refused = queue_.pending() && queue_.drawn();
+  if (!queue_.queued() && !refused) return std::nullopt;
   const rt::Timestamp now = rt::now();
   const auto known = timing();
   if (!known) return now + std::chrono::milliseconds(1);

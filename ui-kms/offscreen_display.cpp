@@ -83,6 +83,11 @@ std::optional<hal::PageFlip> OffscreenDisplay::tryPopFlip() {
   return flip;
 }
 
+std::optional<rt::Timestamp> OffscreenDisplay::nextCall() const {
+  if (!chain_.drawn() || !chain_.pending()) return std::nullopt;
+  return chain_.committedFlip()->page_flip;
+}
+
 std::optional<hal::PageFlip> OffscreenDisplay::committedFlip() const {
   return chain_.committedFlip();
 }

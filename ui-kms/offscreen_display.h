@@ -49,7 +49,7 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override {
     return pacer_.timing();
   }
-  [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return std::nullopt; }
+  [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override;
   [[nodiscard]] hal::ScreenStatus screen() const override { return config_.screen; }
   /// Nobody else can show anything here.
   void releaseScreen() override {}

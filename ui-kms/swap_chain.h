@@ -39,6 +39,9 @@ class SwapChain {
   [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip(rt::Timestamp now);
 
   [[nodiscard]] BufferState state(std::uint32_t buffer) const { return states_[buffer]; }
+  /// The drawn buffer, which waits for its commit.
+  [[nodiscard]] std::optional<std::uint32_t> drawn() const { return find(BufferState::kDrawn); }
+  [[nodiscard]] bool pending() const { return find(BufferState::kPending).has_value(); }
   /// The buffer committed last, if any.
   [[nodiscard]] std::optional<std::uint32_t> committed() const { return committed_; }
   /// When it came or will come on screen.

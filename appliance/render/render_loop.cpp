@@ -14,8 +14,6 @@ namespace {
 // A frame may wait in its socket for three periods: one of them at most is the pictures'.
 constexpr double kShareOfPictures = 0.6;
 constexpr std::size_t kReadyKnownAfter = 8;  // frames
-constexpr rt::Nanoseconds kRetry = std::chrono::milliseconds(1);
-constexpr rt::Nanoseconds kFlipIsTold = std::chrono::microseconds(200);  // after its vblank
 
 hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
                           hal::PixelFormat format) {
@@ -41,9 +39,8 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
     const rt::Timestamp period_later = rt::now() + parameters_.trigger_period;
-    const rt::Timestamp again = std::min(parts_.display.nextCall().value_or(period_later),
-                                         retry_at_.value_or(period_later));
-    (void)parts_.board.frame_ready.waitUntil(std::min(again, period_later));
+    (void)parts_.board.frame_ready.waitUntil(
+        std::min(parts_.display.nextCall().value_or(period_later), period_later));
     rt::sleepUntil(allowance_.nextBegin());
     turn();
   }
@@ -53,7 +50,6 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
 
 void RenderLoop::turn() noexcept {
   const rt::Timestamp wake = rt::now();
-  retry_at_.reset();
   takeCommands();
   Wanted wanted;
   wanted.shot = director_.tick(wake, parameters_.trigger_period, stored_,
@@ -167,7 +163,6 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
                             : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));
   if (!commit) {
     ++counters_.skipped;
-    if (commit.error().code == rt::Errc::kBusy) retry_at_ = nextFlip();
     return false;
   }
   allowance_.spend(wake, drawn_at);
@@ -184,14 +179,6 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     parts_.observer->onPicture({.record = record, .plan = plan ? &*plan : nullptr});
   }
   return true;
-}
-
-/// When a picture that found the one before still on its way can be tried again.
-rt::Timestamp RenderLoop::nextFlip() const noexcept {
-  const rt::Timestamp now = rt::now();
-  const auto timing = parts_.display.timing();
-  if (!timing) return now + kRetry;
-  return timing->vblankAt(timing->firstVblankAfter(now)) + kFlipIsTold;
 }
 
 void RenderLoop::noteReady(const StoredFrame& frame) noexcept {

@@ -108,7 +108,6 @@ class RenderLoop {
   [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
   [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
-  [[nodiscard]] rt::Timestamp nextFlip() const noexcept;
   void noteReady(const StoredFrame& frame) noexcept;
   void countShown(rt::Timestamp commit) noexcept;
   void recordFlips() noexcept;
@@ -131,10 +130,9 @@ class RenderLoop {
   Wanted on_screen_;
   bool stale_ = false;  // the screen lost that picture
   RenderAllowance allowance_;
-  bool held_back_ = false;                 // the last new live moment was not drawn
-  std::optional<rt::Timestamp> retry_at_;  // the display was busy: try again then
-  rt::HighQuantile ready_delay_;           // of live frames
-  std::optional<LockedVblanks> locked_;    // none: triggers are not locked to the screen
+  bool held_back_ = false;               // the last new live moment was not drawn
+  rt::HighQuantile ready_delay_;         // of live frames
+  std::optional<LockedVblanks> locked_;  // none: triggers are not locked to the screen
   std::uint64_t picture_id_ = 0;
   RenderStatus counters_;
   rt::Timestamp second_begin_;  // of the second that is being counted
