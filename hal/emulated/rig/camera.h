@@ -10,12 +10,17 @@
 
 #include <netinet/in.h>
 
+#include "hal/emulated/rig/camera_clock.h"
 #include "hal/emulated/rig/control_channel.h"
+#include "hal/emulated/rig/fault_command.h"
+#include "hal/emulated/rig/fault_log.h"
+#include "hal/emulated/rig/fault_state.h"
 #include "hal/emulated/rig/features.h"
 #include "hal/emulated/rig/frame_source.h"
 #include "hal/emulated/rig/gvcp.h"
 #include "hal/emulated/rig/gvsp.h"
 #include "hal/emulated/rig/pacing.h"
+#include "hal/emulated/rig/packet_faults.h"
 #include "hal/emulated/rig/packet_sender.h"
 #include "hal/emulated/rig/registers.h"
 #include "hal/emulated/rig/run_record.h"
@@ -34,6 +39,7 @@ struct RigContext {
   double link_bits_per_second;
   std::uint32_t max_packet_bytes;
   std::span<const char> xml;
+  FaultLog* fault_log = nullptr;  ///< nullptr: none
 };
 
 /// One GigE Vision camera: registers and control channel on one socket, frames on another.
@@ -57,6 +63,9 @@ class Camera {
   /// An edge of Line1. @p trigger counts rising edges, from 1.
   void onLine1(bool rising, rt::Timestamp edge, std::uint64_t trigger);
 
+  /// Begins or ends a fault; see docs/emulator.md.
+  void applyFault(const FaultCommand& command, rt::Timestamp now);
+
   /// Does what is due at @p now: ends exposures, sends packets, expires control.
   void advance(rt::Timestamp now);
   /// The next instant at which advance() has something to do.
@@ -67,6 +76,9 @@ class Camera {
     std::uint32_t slot;
     Pacing pacing;
     SentFrame record;
+    rt::Nanoseconds held{0};  // by a fault, beyond the instant it was ready to leave
+    std::uint32_t packets_lost = 0;
+    std::optional<Fault> fault;  // whose doing it is that the link is not free
   };
 
   gvcp::Status execute(const gvcp::Command& command, const ControlChannel::Peer& peer,
@@ -88,12 +100,23 @@ class Camera {
   void triggerOwn(TriggerSource source, rt::Timestamp now);
   void startTransfer();
   void sendDue(rt::Timestamp now);
+  PacketSender::Outcome put(const Pacing::Due& due, rt::Timestamp now);
   void finishTransfer();
+
+  void showLinkSpeed();
+  void stopBecause(Fault fault);
+  void cutTransfer(Fault fault);
+  [[nodiscard]] std::optional<Fault> busyBecause() const;
+  [[nodiscard]] Fault lossBecause(rt::Timestamp now) const;
+  void note(Fault fault, std::uint64_t trigger, std::uint16_t frame_id = 0,
+            std::uint32_t packets_lost = 0);
+  [[nodiscard]] double linkBitsPerSecond() const;
 
   [[nodiscard]] LinkTiming linkTiming() const;
   [[nodiscard]] rt::Nanoseconds freeRunPeriod() const;
   [[nodiscard]] sockaddr_in destination() const;
   [[nodiscard]] std::uint64_t clockTicks(rt::Timestamp at) const;
+  [[nodiscard]] bool wantsExtraExposure() const;
 
   Identity identity_;
   RigContext& context_;
@@ -102,6 +125,9 @@ class Camera {
   ControlChannel control_;
   PacketSender sender_;
   FrameSource source_;
+  CameraClock clock_;
+  FaultState faults_;
+  PacketFaults wire_faults_;
 
   bool acquiring_ = false;
   bool single_frame_ = false;
@@ -109,8 +135,12 @@ class Camera {
   rt::Timestamp next_free_run_;
   std::uint16_t last_block_id_ = 0;
   std::optional<Exposure> exposure_;
+  std::optional<Fault> exposure_fault_;  // which asked for it, instead of an edge
   std::optional<Transfer> transfer_;
-  rt::Timestamp retry_at_;  // a full socket is asked again then
+  rt::Timestamp link_free_at_;       // when the frames begun so far will have left
+  std::optional<Fault> link_fault_;  // which made it that late
+  std::optional<Fault> stopped_by_;  // which ended the last acquisition
+  rt::Timestamp retry_at_;           // a full socket is asked again then
   std::uint32_t next_slot_ = 0;
   std::array<gvsp::Frame, kFrameHistory> history_{};
 };

@@ -30,6 +30,7 @@ struct Overloaded : F... {
 
 void Camera::onControl(std::span<const std::uint8_t> datagram, const sockaddr_in& from,
                        rt::Timestamp now, const Reply& reply) {
+  if (faults_.isDark(now)) return;
   const auto command = gvcp::parse(datagram);
   if (!command) return;
   const ControlChannel::Peer peer{ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)};
@@ -188,7 +189,10 @@ void Camera::resend(const gvcp::PacketResend& request) {
   const std::uint32_t last = std::min(request.last_packet, frame->packetCount() - 1);
   if (request.first_packet > last) return;
   const auto outcome = sender_.send(destination(), *frame, request.first_packet,
-                                    last - request.first_packet + 1, context_.loss);
+                                    last - request.first_packet + 1, wire_faults_);
+  if (outcome.lost_on_purpose > 0) {
+    note(lossBecause(rt::now()), 0, frame->block_id, outcome.lost_on_purpose);
+  }
   context_.counters.packets_resent += outcome.packets;
   context_.counters.packets_lost_on_purpose += outcome.lost_on_purpose;
   context_.counters.bytes_sent += outcome.bytes;
@@ -202,6 +206,7 @@ void Camera::sendTestPacket() {
   const std::uint32_t packet_bytes = registers_.get(reg::kStreamPacketSize) & kPacketSizeMask;
   const std::vector<std::uint8_t> packet(packet_bytes - 28, 0xa5);  // less IP and UDP headers
   const sockaddr_in to = destination();
+  if (!wire_faults_.carries(packet_bytes)) return;
   // A test packet that does not arrive is the answer that the client asked for.
   (void)::sendto(stream_fd_, packet.data(), packet.size(), 0,
                  reinterpret_cast<const sockaddr*>(&to), sizeof to);

@@ -37,6 +37,7 @@ struct Feature {
 namespace reg {
 inline constexpr std::uint32_t kUserName = 0x00e8;
 inline constexpr std::uint32_t kHeartbeatTimeout = 0x0938;
+inline constexpr std::uint32_t kLinkSpeed = 0x0670;
 inline constexpr std::uint32_t kTimestampTickHigh = 0x093c;
 inline constexpr std::uint32_t kTimestampControl = 0x0944;
 inline constexpr std::uint32_t kTimestampValueHigh = 0x0948;

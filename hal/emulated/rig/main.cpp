@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hal/emulated/rig/convert_pose2sim.h"
+#include "hal/emulated/rig/fault_port.h"
 #include "hal/emulated/rig/recording_scene.h"
 #include "hal/emulated/rig/rig.h"
 #include "hal/emulated/rig/rig_file.h"
@@ -29,6 +30,7 @@ struct Arguments {
   std::string convert_kind;
   std::string convert_from;
   std::string convert_to;
+  std::string fault;
 };
 
 int fail(const std::string& message) {
@@ -69,6 +71,11 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(576, 16000))
       ->capture_default_str();
   app.add_option("--wire-log", a.rig.wire_log, "CSV file: the instants of every frame sent");
+  app.add_option("--fault-port", a.rig.fault_port,
+                 "UDP port on the first address for faults on command; 0: none")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  app.add_option("--fault-log", a.rig.fault_log, "CSV file: every fault and what came of it");
   app.add_option("--stats", a.stats, "JSON file at exit: counts, lateness, validity");
   app.add_option("--rig-out", a.rig_out, "write the stamp scene's rig.toml there");
   app.add_option("--realtime-priority", a.rig.realtime_priority, "SCHED_FIFO priority; 0: none")
@@ -145,6 +152,15 @@ int serve(Arguments& a) {
   return 0;
 }
 
+int commandFault(const Arguments& a) {
+  const auto address = emulator::parseAddress(a.first_address);
+  if (!address) return fail("--first-address " + address.error());
+  const auto answer = emulator::commandFault(*address, a.rig.fault_port, a.fault);
+  if (!answer) return fail(answer.error());
+  std::puts(answer->c_str());
+  return *answer == "ok" ? 0 : 1;
+}
+
 int convert(const Arguments& a) {
   const auto rig = emulator::convertPose2sim(a.convert_from, a.convert_to);
   if (!rig) return fail(rig.error());
@@ -166,6 +182,11 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"pose2sim"}));
   converter->add_option("source", arguments.convert_from, "the data")->required();
   converter->add_option("destination", arguments.convert_to, "the folder to make")->required();
+  CLI::App* fault = app.add_subcommand("fault", "make a camera of a running emulator do wrong");
+  fault->add_option("command", arguments.fault, "as in docs/emulator.md, for example: \"7 kill\"")
+      ->required();
+  fault->fallthrough();  // --first-address and --fault-port tell which emulator
   CLI11_PARSE(app, argc, argv);
+  if (*fault) return commandFault(arguments);
   return *converter ? convert(arguments) : serve(arguments);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <span>
 
 #include <netinet/udp.h>
 #include <sys/socket.h>
@@ -116,6 +117,17 @@ class Batch {
   std::array<gvsp::Leader, kMaxPackets> headers_bytes_;  // a leader is the longest header
 };
 
+/// As the path's MTU counts it, IP header and all.
+std::uint32_t datagramBytes(const gvsp::Frame& frame, std::uint32_t id) {
+  constexpr std::uint32_t kIpUdp = 28;
+  const std::uint32_t last = frame.packetCount() - 1;
+  if (id == 0) return gvsp::kLeaderBytes + kIpUdp;
+  if (id == last) return gvsp::kTrailerBytes + kIpUdp;
+  const std::size_t before = std::size_t{id - 1} * frame.payload_per_packet;
+  const auto left = static_cast<std::uint32_t>(frame.picture.bytes() - before);
+  return std::min(frame.payload_per_packet, left) + gvsp::kPacketOverheadBytes;
+}
+
 bool canSegment(int fd) {
   const int off = 0;
   return ::setsockopt(fd, SOL_UDP, UDP_SEGMENT, &off, sizeof off) == 0;
@@ -132,7 +144,16 @@ std::uint32_t PacketSender::packetsPerMessage(std::uint32_t payload_per_packet) 
 
 PacketSender::Outcome PacketSender::send(const sockaddr_in& to, const gvsp::Frame& frame,
                                          std::uint32_t first, std::uint32_t count,
-                                         LossModel& loss) {
+                                         PacketFaults& faults) {
+  const bool plain =
+      !faults.rearranges() && faults.carries(frame.payload_per_packet + gvsp::kPacketOverheadBytes);
+  return plain ? sendInRuns(to, frame, first, count, faults)
+               : sendOneByOne(to, frame, first, count, faults);
+}
+
+PacketSender::Outcome PacketSender::sendInRuns(const sockaddr_in& to, const gvsp::Frame& frame,
+                                               std::uint32_t first, std::uint32_t count,
+                                               PacketFaults& faults) {
   Outcome outcome;
   const std::uint32_t trailer = frame.packetCount() - 1;
   const std::uint32_t end = first + count;
@@ -147,7 +168,7 @@ PacketSender::Outcome PacketSender::send(const sockaddr_in& to, const gvsp::Fram
     std::array<std::uint32_t, kMaxMessages> lost_before{};
     std::uint32_t lost = 0;
     while (next < end && !batch.isFull()) {
-      if (loss.loses()) {
+      if (faults.loses()) {
         ++next;
         ++lost;
         continue;
@@ -158,7 +179,7 @@ PacketSender::Outcome PacketSender::send(const sockaddr_in& to, const gvsp::Fram
       bool lost_one = false;
       while (is_payload && !lost_one && next < end && next != trailer &&
              batch.packetsOf(batch.messages()) < per_message) {
-        lost_one = loss.loses();
+        lost_one = faults.loses();
         if (!lost_one) batch.add(frame, next);
         ++next;
       }
@@ -187,6 +208,50 @@ PacketSender::Outcome PacketSender::send(const sockaddr_in& to, const gvsp::Fram
     outcome.lost_on_purpose += lost;
   }
   return outcome;
+}
+
+PacketSender::Outcome PacketSender::sendOneByOne(const sockaddr_in& to, const gvsp::Frame& frame,
+                                                 std::uint32_t first, std::uint32_t count,
+                                                 PacketFaults& faults) {
+  Outcome settled;  // up to the last packet of which nothing is left to send
+  std::uint32_t next = first;
+  const std::uint32_t end = first + count;
+  while (next < end) {
+    Batch batch(to);
+    Outcome drawn = settled;
+    const bool overtaken = next + 1 < end && faults.overtaken();
+    drawn.overtaken += overtaken ? 1 : 0;
+    const std::array<std::uint32_t, 2> order = {overtaken ? next + 1 : next, next};
+    const std::size_t packets = overtaken ? 2 : 1;
+    for (const std::uint32_t id : std::span(order).first(packets)) {
+      if (!faults.carries(datagramBytes(frame, id)) || faults.loses()) {
+        ++drawn.lost_on_purpose;
+        continue;
+      }
+      const bool doubled = faults.doubled();
+      drawn.doubled += doubled ? 1 : 0;
+      for (int copies = doubled ? 2 : 1; copies > 0; --copies) {
+        batch.open();
+        batch.add(frame, id);
+        drawn.bytes += batch.bytesOf(batch.messages());
+        batch.close(0);
+      }
+    }
+    // A pair that went out by half is sent again whole: one more duplicate on such a wire.
+    const auto wanted = static_cast<unsigned>(batch.messages());
+    int accepted = 0;
+    do {
+      accepted = wanted == 0 ? 0 : ::sendmmsg(fd_, batch.data(0), wanted, 0);
+    } while (accepted < 0 && errno == EINTR);
+    if (accepted != static_cast<int>(wanted)) {
+      settled.os_errno = accepted < 0 ? errno : EAGAIN;
+      return settled;
+    }
+    next += static_cast<std::uint32_t>(packets);
+    settled = drawn;
+    settled.packets = next - first;
+  }
+  return settled;
 }
 
 }  // namespace emulator

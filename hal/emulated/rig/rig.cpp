@@ -29,7 +29,7 @@ constexpr std::uint32_t kSubnetMask = 0xff00'0000;
 constexpr rt::Nanoseconds kLongestSleep = std::chrono::seconds(1);
 constexpr int kMaxEvents = 64;
 
-enum Source : std::uint64_t { kBroadcast = 1u << 20, kWire, kSignal };
+enum Source : std::uint64_t { kBroadcast = 1u << 20, kWire, kSignal, kFaults };
 
 rt::Nanoseconds optoDelay(const std::vector<double>& delays_us, std::uint32_t camera) {
   if (delays_us.empty()) return rt::Nanoseconds{0};
@@ -60,11 +60,13 @@ struct Rig::State {
 
   std::expected<void, std::string> open();
   std::expected<void, std::string> openCamera(std::uint32_t number);
+  std::expected<void, std::string> openFaults();
   void watch(int fd, std::uint64_t source) const;
   void receive(std::uint64_t source, rt::Timestamp now);
   void receiveControl(int fd, Camera& camera, rt::Timestamp now);
   void receiveBroadcast(rt::Timestamp now);
   void receiveWire(rt::Timestamp now);
+  void receiveFaults();
   void onEdge(const WireEdge& edge);
   void fireInternal(rt::Timestamp now);
   void enterRealtime() const;
@@ -75,6 +77,8 @@ struct Rig::State {
   LatenessHistogram lateness;
   LossModel loss;
   std::optional<WireLog> wire_log;
+  std::optional<FaultLog> fault_log;
+  std::optional<FaultPort> fault_port;
   RigContext context;
   UniqueFd epoll;
   UniqueFd signals;
@@ -127,6 +131,21 @@ std::expected<void, std::string> Rig::State::open() {
     wire_log = std::move(*log);
     context.wire_log = &*wire_log;
   }
+  return openFaults();
+}
+
+std::expected<void, std::string> Rig::State::openFaults() {
+  if (!options.fault_log.empty()) {
+    auto log = FaultLog::open(options.fault_log);
+    if (!log) return std::unexpected(log.error());
+    fault_log = std::move(*log);
+    context.fault_log = &*fault_log;
+  }
+  if (options.fault_port == 0) return {};
+  auto port = FaultPort::open(options.first_address, options.fault_port);
+  if (!port) return std::unexpected(port.error());
+  fault_port = std::move(*port);
+  watch(fault_port->fd(), kFaults);
   return {};
 }
 
@@ -162,6 +181,8 @@ void Rig::State::receive(std::uint64_t source, rt::Timestamp now) {
     receiveWire(now);
   } else if (source == kBroadcast) {
     receiveBroadcast(now);
+  } else if (source == kFaults) {
+    receiveFaults();
   } else if (source < cameras.size()) {
     receiveControl(control[source].get(), cameras[source], now);
   }
@@ -210,6 +231,15 @@ void Rig::State::receiveWire(rt::Timestamp now) {
           stderr);
     }
   }
+}
+
+void Rig::State::receiveFaults() {
+  fault_port->serve(static_cast<std::uint32_t>(cameras.size()), [this](const FaultCommand& fault) {
+    ++counters.faults_commanded;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      if (fault.camera.value_or(i) == i) cameras[i].applyFault(fault, rt::now());
+    }
+  });
 }
 
 void Rig::State::onEdge(const WireEdge& edge) {

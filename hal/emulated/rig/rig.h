@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/emulated/rig/fault_port.h"
 #include "hal/emulated/rig/run_record.h"
 #include "hal/emulated/rig/scene.h"
 #include "rt/clock.h"
@@ -23,8 +24,10 @@ struct RigOptions {
   std::uint64_t seed = 1;
   double internal_trigger_hz = 0;  ///< 0: edges come from the wire only
   std::optional<rt::Nanoseconds> run_for;
-  int realtime_priority = 0;  ///< SCHED_FIFO; 0: ordinary scheduling
-  std::string wire_log;       ///< file; empty: none
+  int realtime_priority = 0;                     ///< SCHED_FIFO; 0: ordinary scheduling
+  std::string wire_log;                          ///< file; empty: none
+  std::uint16_t fault_port = kDefaultFaultPort;  ///< on first_address; 0: none
+  std::string fault_log;                         ///< file; empty: none
 };
 
 /// N cameras and their trigger wire, served by one thread until told to stop.

@@ -35,6 +35,10 @@ struct Counters {
   std::uint64_t send_failures = 0;     ///< packets the kernel refused for good
   std::uint64_t frames_cut_short = 0;  ///< stopped by the controller while being sent
   std::uint64_t packets_lost_on_purpose = 0;
+  std::uint64_t packets_doubled = 0;             ///< by a fault
+  std::uint64_t packets_overtaken = 0;           ///< by the one behind, by a fault
+  std::uint64_t frames_withheld_on_purpose = 0;  ///< edges that a fault kept from giving a frame
+  std::uint64_t faults_commanded = 0;
   std::uint64_t packets_resent = 0;
   std::uint64_t resends_unavailable = 0;  ///< asked for a frame that is no longer kept
   std::uint64_t wire_errors = 0;          ///< datagrams on the trigger wire that are no edge
