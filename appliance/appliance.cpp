@@ -1,16 +1,15 @@
 #include "appliance/appliance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <thread>
 #include <utility>
 
-#include <sys/resource.h>
-#include <unistd.h>
-
+#include "appliance/camera_watch.h"
 #include "appliance/capture/genlock_text.h"
-#include "appliance/capture/liveness.h"
+#include "appliance/device_settings.h"
+#include "appliance/network/network_plan.h"
+#include "appliance/process_facts.h"
 #include "appliance/trigger_wiring.h"
 #include "hal/backends.h"
 
@@ -27,71 +26,8 @@ constexpr std::size_t kFirstCameraTrace = 3;
 
 constexpr std::uint32_t kFewestSets = 8;
 
-rt::Nanoseconds periodOf(double rate_hz) {
-  return rt::Nanoseconds{std::llround(1e9 / rate_hz)};
-}
-
-rt::Nanoseconds microseconds(double us) {
-  return rt::Nanoseconds{std::llround(us * 1e3)};
-}
-
-/// From the edge on the wire to the exposure, in every camera: the slowest opto-isolator's.
-double commonDelay_us(const Config::Cameras& config) {
-  return config.opto_delay_us.empty() ? 0 : std::ranges::max(config.opto_delay_us);
-}
-
-double triggerDelay_us(const Config::Cameras& config, std::size_t camera) {
-  return config.opto_delay_us.empty() ? 0 : commonDelay_us(config) - config.opto_delay_us[camera];
-}
-
-hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& camera,
-                             std::size_t index) {
-  return {.name = camera.name,
-          .address = config.addresses[index],
-          .width_px = camera.width_px,
-          .height_px = camera.height_px,
-          .pixel_format = config.pixel_format,
-          .exposure_us = config.exposure_us,
-          .gain_db = config.gain_db,
-          .white_balance_rgb = config.white_balance_rgb,
-          .trigger_source = config.trigger_source,
-          .trigger_delay_us = triggerDelay_us(config, index),
-          .packet_size_bytes = config.packet_size_bytes,
-          .packet_delay_ns = config.packet_delay_ns,
-          .socket_buffer_bytes = config.socket_buffer_bytes,
-          .packet_timeout_us = config.packet_timeout_us,
-          .frame_retention_us = config.frame_retention_us};
-}
-
-std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
-  std::vector<rt::Nanoseconds> ladder;
-  for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
-  return ladder;
-}
-
-rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how) {
-  return {
-      .name = std::move(name), .policy = how.policy, .priority = how.priority, .cpus = how.cpus};
-}
-
-std::string receiveThreadName(std::size_t camera) {
-  char name[16];
-  std::snprintf(name, sizeof name, "recv%02zu", (camera + 1) % 100);
-  return name;
-}
-
-std::vector<TracedThread> tracedThreads() {
-  std::vector<TracedThread> threads;
-  for (const rt::TaskInfo& task : rt::listTasks()) {
-    threads.push_back({.name = task.name,
-                       .policy = task.policy == rt::SchedPolicy::kFifo         ? "fifo"
-                                 : task.policy == rt::SchedPolicy::kRoundRobin ? "rr"
-                                                                               : "other",
-                       .priority = task.priority,
-                       .cpu = task.cpus.size() == 1 ? task.cpus.front() : -1});
-  }
-  return threads;
-}
+// A camera that takes longer joins a rig that already runs.
+constexpr rt::Nanoseconds kCamerasSettleWithin = 10s;
 
 std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available) {
   char line[256];
@@ -101,25 +37,6 @@ std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available
                 layout.sets, static_cast<double>(layout.bytes()) * 1e-9,
                 static_cast<double>(available) * 1e-9);
   return line;
-}
-
-double cpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-std::uint64_t residentBytes() {
-  std::uint64_t pages = 0;
-  std::uint64_t resident = 0;
-  if (std::FILE* statm = std::fopen("/proc/self/statm", "re")) {
-    if (std::fscanf(statm, "%lu %lu", &pages, &resident) != 2) resident = 0;
-    (void)std::fclose(statm);
-  }
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace
@@ -200,10 +117,6 @@ std::expected<void, std::string> Appliance::openDevices() {
     if (loopback) loopback_ = std::move(*loopback);
   }
   openPanel();
-  openCameras();
-  if (std::ranges::none_of(cameras_, [](const auto& camera) { return camera != nullptr; })) {
-    return std::unexpected("no camera opened: " + degraded_.back());
-  }
   return {};
 }
 
@@ -224,19 +137,9 @@ void Appliance::openPanel() {
   panel_ = std::move(*panel);
 }
 
-void Appliance::openCameras() {
-  for (std::size_t i = 0; i < rig_.cameras.size(); ++i) {
-    auto camera =
-        hal::openCamera(config_.cameras.backend, profileOf(config_.cameras, rig_.cameras[i], i),
-                        threadConfig(receiveThreadName(i), config_.realtime.receive));
-    if (!camera) degraded_.push_back(camera.error());
-    cameras_.push_back(camera ? std::move(*camera) : nullptr);
-  }
-}
-
 std::expected<void, std::string> Appliance::openTrace() {
   if (config_.state.trace.empty()) return {};
-  auto trace = TraceWriter::open(config_.state.trace, kFirstCameraTrace + cameras_.size());
+  auto trace = TraceWriter::open(config_.state.trace, kFirstCameraTrace + rig_.cameras.size());
   if (!trace) return std::unexpected(trace.error());
   trace_ = std::move(*trace);
   return {};
@@ -254,6 +157,7 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
                                                       history_->camera(i), board_,
                                                       producer(kFirstCameraTrace + i)));
   }
+  makeSupervisors();
   trigger_loop_ = std::make_unique<TriggerLoop>(
       TriggerTiming{.period = period_,
                     .pulse_width = microseconds(config_.trigger.pulse_width_us),
@@ -294,15 +198,7 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
     started = startThread(panel_thread_, "panel", realtime.panel,
                           [this](auto stop) { panel_loop_->run(stop); });
   }
-  for (std::uint32_t i = 0; started && i < history_->cameras(); ++i) {
-    if (!cameras_[i]) continue;
-    CameraFrames& frames = history_->camera(i);
-    const auto streaming = cameras_[i]->start(*collectors_[i], frames.slots(), frames.firstSlots());
-    if (!streaming) {
-      degraded_.push_back(streaming.error());
-      cameras_[i].reset();
-    }
-  }
+  if (started) started = startCameras();
   if (started && loopback_loop_) {
     started = startThread(loopback_thread_, "loopback", {},
                           [this](auto stop) { loopback_loop_->run(stop); });
@@ -317,6 +213,34 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
     return started;
   }
   if (trace_) trace_->begin(runRecord(display));
+  return {};
+}
+
+void Appliance::makeSupervisors() {
+  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
+    const std::string& backend = config_.cameras.backend;
+    const hal::CameraProfile profile = profileOf(config_.cameras, rig_.cameras[i], i);
+    CameraDoor door{.probe =
+                        [backend, address = profile.address](rt::Nanoseconds timeout) {
+                          return hal::probeCamera(backend, address, timeout);
+                        },
+                    .open =
+                        [backend, profile,
+                         receive = threadConfig(receiveThreadName(i), config_.realtime.receive)] {
+                          return hal::openCamera(backend, profile, receive);
+                        }};
+    supervisors_.push_back(std::make_unique<CameraSupervisor>(std::move(door), *collectors_[i],
+                                                              history_->camera(i), board_.edges));
+  }
+}
+
+/// All at once; returns when every camera streams or is known not to.
+std::expected<void, std::string> Appliance::startCameras() {
+  for (std::size_t i = 0; i < supervisors_.size(); ++i) {
+    if (auto started = supervisors_[i]->start(i); !started) return started;
+  }
+  const rt::Timestamp patience = rt::now() + kCamerasSettleWithin;
+  for (const auto& supervisor : supervisors_) (void)supervisor->waitSettled(patience);
   return {};
 }
 
@@ -349,9 +273,8 @@ void Appliance::stopPipeline() {
     // Frames of the last triggers are still on the wire.
     std::this_thread::sleep_for(2 * period_);
   }
-  for (const auto& camera : cameras_) {
-    if (camera) camera->stop();
-  }
+  for (const auto& supervisor : supervisors_) supervisor->requestStop();
+  for (const auto& supervisor : supervisors_) supervisor->stop();
   loopback_thread_ = {};
   panel_thread_ = {};
   if (render_thread_.joinable()) {
@@ -410,27 +333,36 @@ Status Appliance::status() const {
     status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");
   }
   status.genlock_text = genlockText(status.genlock, config_.trigger.rate_hz);
-  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
-    const CollectorCounts counts = collectors_[i]->counts();
-    status.cameras.push_back({.name = rig_.cameras[i].name,
-                              .state = cameraState(i),
-                              .frames_lost = counts.missing,
-                              .frames_incomplete = counts.incomplete});
-    status.frames_lost += counts.missing;
-    status.frames_incomplete += counts.incomplete;
+  status.cameras = cameraStatuses();
+  for (const CameraStatus& camera : status.cameras) {
+    status.frames_lost += camera.frames_lost;
+    status.frames_incomplete += camera.frames_incomplete;
   }
   return status;
 }
 
-CameraState Appliance::cameraState(std::uint32_t camera) const {
-  const std::uint64_t fired = board_.edges.newest();
-  if (!cameras_[camera]) return CameraState::kLost;
-  if (delivers(history_->camera(camera).newest(), fired)) return CameraState::kStreaming;
-  return fired < kLostAfterTriggers + kTriggersOnTheWire ? CameraState::kStarting
-                                                         : CameraState::kLost;
+std::vector<CameraStatus> Appliance::cameraStatuses() const {
+  const rt::Timestamp now = rt::now();
+  std::vector<CameraStatus> cameras;
+  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
+    const CollectorCounts counts = collectors_[i]->counts();
+    const CameraHealth health = supervisors_[i]->health();
+    cameras.push_back({.name = rig_.cameras[i].name,
+                       .state = health.state,
+                       .trouble = health.trouble,
+                       .reason = reasonOf(health, supervisors_[i]->silentFor(now)),
+                       .frames_lost = counts.missing,
+                       .frames_incomplete = counts.incomplete});
+  }
+  return cameras;
 }
 
 RunRecord Appliance::runRecord(const hal::Display& display) const {
+  std::vector<std::string> degraded = degraded_;
+  for (std::size_t i = 0; const CameraStatus& camera : cameraStatuses()) {
+    const std::string who = cameraTitle(i++, camera.name);
+    if (!camera.reason.empty()) degraded.push_back(who + camera.reason);
+  }
   const hal::DisplayMode mode = display.mode();
   const rt::ArenaReport& memory = history_->memory().report();
   return {.cameras = history_->cameras(),
@@ -447,7 +379,7 @@ RunRecord Appliance::runRecord(const hal::Display& display) const {
           .memory_bytes = memory.bytes,
           .memory_locked = memory.locked,
           .threads = tracedThreads(),
-          .degraded = degraded_,
+          .degraded = std::move(degraded),
           .start = rt::now()};
 }
 

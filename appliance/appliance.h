@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "appliance/capture/camera_supervisor.h"
 #include "appliance/capture/collector.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/loopback.h"
@@ -21,7 +22,6 @@
 #include "appliance/render/render_loop.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/button_panel.h"
-#include "hal/camera.h"
 #include "hal/display.h"
 #include "hal/edge_input.h"
 #include "hal/trigger_line.h"
@@ -32,8 +32,8 @@ namespace appliance {
 /// The running pipeline: trigger line -> cameras -> frame history -> director -> display.
 ///
 /// start() sets everything up before the real-time threads see it, and fires the first trigger
-/// last; stop() goes the other way. A camera that does not open is left out and named, the rest
-/// runs on.
+/// last; stop() goes the other way. A camera that does not open is named and tried again for as
+/// long as it takes; the rest runs on.
 ///
 /// Threads  All members: the owner (main), which serves the control interface too. The threads
 ///          it starts are those of docs/real-time.md.
@@ -63,14 +63,15 @@ class Appliance final : public ControlSink, public StatusSource {
   [[nodiscard]] std::expected<void, std::string> makeHistory(const hal::Display& display);
   [[nodiscard]] std::expected<void, std::string> openDevices();
   void openPanel();
-  void openCameras();
   [[nodiscard]] std::expected<void, std::string> openTrace();
   void makeLoops(hal::Display& display, PictureObserver* observer);
   [[nodiscard]] std::expected<void, std::string> startThreads(const hal::Display& display);
   [[nodiscard]] std::expected<void, std::string> startThread(rt::Thread& thread, const char* name,
                                                              const Config::ThreadSchedule& how,
                                                              std::function<void(std::stop_token)>);
-  [[nodiscard]] CameraState cameraState(std::uint32_t camera) const;
+  void makeSupervisors();
+  [[nodiscard]] std::expected<void, std::string> startCameras();
+  [[nodiscard]] std::vector<CameraStatus> cameraStatuses() const;
   void stopPipeline();
   [[nodiscard]] RunRecord runRecord(const hal::Display& display) const;
   [[nodiscard]] SummaryRecord summary() const;
@@ -91,7 +92,7 @@ class Appliance final : public ControlSink, public StatusSource {
   std::unique_ptr<hal::ButtonPanel> panel_;
   std::unique_ptr<TraceWriter> trace_;  // none: not traced
   std::vector<std::unique_ptr<Collector>> collectors_;
-  std::vector<std::unique_ptr<hal::Camera>> cameras_;  // null where it did not open
+  std::vector<std::unique_ptr<CameraSupervisor>> supervisors_;
   std::unique_ptr<TriggerLoop> trigger_loop_;
   std::unique_ptr<LoopbackLoop> loopback_loop_;
   std::unique_ptr<RenderLoop> render_loop_;

@@ -4,20 +4,27 @@
 
 namespace appliance {
 
+std::string cameraTitle(std::size_t camera, const std::string& name) {
+  return "camera " + std::to_string(camera + 1) + " (" + name + "): ";
+}
+
 std::vector<std::string> CameraWatch::look(const Status& status, rt::Timestamp now) {
   std::vector<std::string> lines;
   seen_.resize(status.cameras.size());
   for (std::size_t i = 0; i < status.cameras.size(); ++i) {
     const CameraStatus& camera = status.cameras[i];
     Seen& seen = seen_[i];
-    const std::string who = "camera " + std::to_string(i + 1) + " (" + camera.name + "): ";
-    const CameraState before = std::exchange(seen.state, camera.state);
+    const std::string who = cameraTitle(i, camera.name);
     const std::uint64_t lost_before = std::exchange(seen.frames_lost, camera.frames_lost);
 
-    if (camera.state == CameraState::kLost && before != CameraState::kLost) {
-      lines.push_back(who + "no frames: check its cable, its power and its switch port");
-    } else if (camera.state == CameraState::kStreaming && before == CameraState::kLost) {
-      lines.push_back(who + "frames again");
+    // What is wrong is known a moment after the silence is; on the way back nothing is told.
+    const bool wrong = camera.trouble != CameraTrouble::kNone;
+    if (wrong && camera.trouble != seen.told) {
+      lines.push_back(who + camera.reason);
+      seen.told = camera.trouble;
+    } else if (camera.state == CameraState::kStreaming && seen.told != CameraTrouble::kNone) {
+      lines.push_back(who + "a frame for every trigger again");
+      seen.told = CameraTrouble::kNone;
     }
 
     if (camera.state != CameraState::kStreaming) continue;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hal/aravis/aravis_camera.h"
+#include "hal/aravis/camera_probe.h"
 #include "hal/emulated/scripted_panel.h"
 #include "hal/emulated/terminal_panel.h"
 #include "hal/emulated/trigger_line.h"
@@ -30,6 +31,12 @@ Opened<Camera> openCamera(std::string_view backend, const CameraProfile& profile
                           const rt::ThreadConfig& receive) {
   if (backend == "aravis") return aravis::openCamera(profile, receive);
   return std::unexpected(unknown("cameras", backend, "\"aravis\""));
+}
+
+CameraProbe probeCamera(std::string_view backend, const std::string& address,
+                        rt::Nanoseconds timeout) {
+  if (backend == "aravis") return aravis::probeCamera(address, timeout);
+  return {};
 }
 
 Opened<TriggerLine> openTriggerLine(std::string_view backend, const TriggerLineSettings& settings) {

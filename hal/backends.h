@@ -10,6 +10,7 @@
 
 #include "hal/button_panel.h"
 #include "hal/camera.h"
+#include "hal/camera_probe.h"
 #include "hal/camera_profile.h"
 #include "hal/edge_input.h"
 #include "hal/trigger_line.h"
@@ -27,6 +28,11 @@ using Opened = std::expected<std::unique_ptr<Device>, std::string>;
 /// backend "aravis". @p receive: how the camera's receive thread is to run.
 [[nodiscard]] Opened<Camera> openCamera(std::string_view backend, const CameraProfile& profile,
                                         const rt::ThreadConfig& receive);
+
+/// Whether a camera answers at @p address and who controls it. Waits no longer than @p timeout; an
+/// unknown backend's cameras never answer.
+[[nodiscard]] CameraProbe probeCamera(std::string_view backend, const std::string& address,
+                                      rt::Nanoseconds timeout);
 
 struct TriggerLineSettings {
   std::uint16_t wire_port = 0;     ///< "emulated": the emulator's trigger wire on this machine

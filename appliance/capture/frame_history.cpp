@@ -38,7 +38,7 @@ CameraFrames::CameraFrames(std::vector<std::span<std::byte>> slots,
       pool_(static_cast<std::uint32_t>(slots_.size())) {
   assert(slots_.size() > std::size_t{sets} + in_flight && slots_.size() < 1U << kSlotBits);
   assert(dma_bufs_.empty() || dma_bufs_.size() == slots_.size());
-  for (std::uint32_t i = 0; i < in_flight; ++i) first_slots_.push_back(*pool_.tryAcquire());
+  for (std::uint32_t i = 0; i < in_flight; ++i) filling_.push_back(*pool_.tryAcquire());
 }
 
 std::uint32_t CameraFrames::store(std::uint32_t slot, const StoredFrame& frame) RT_SAFE {
@@ -57,6 +57,9 @@ std::uint32_t CameraFrames::store(std::uint32_t slot, const StoredFrame& frame) 
 
   const auto next = pool_.tryAcquire();
   assert(next.has_value());  // sets + in flight + all pins fit, by the layout
+  const auto handed_back = std::ranges::find(filling_, slot);
+  assert(handed_back != filling_.end());
+  *handed_back = *next;
   return *next;
 }
 

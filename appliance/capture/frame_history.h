@@ -42,7 +42,8 @@ struct PinnedFrame {
 /// writer retires; the slot's own state word decides between them, so a pinned slot cannot
 /// come back to the camera.
 ///
-/// Threads  store(): the camera's receive thread. tryPin(), newest(): any thread.
+/// Threads  store(): the camera's receive thread, one after the other where the camera is started
+///          again. tryPin(), newest(): any thread.
 /// RT       store() is wait-free, tryPin() lock-free. Nothing allocates.
 /// Memory   All pins of all readers together hold at most `reserve` slots.
 class CameraFrames {
@@ -53,8 +54,15 @@ class CameraFrames {
 
   [[nodiscard]] std::span<const std::span<std::byte>> slots() const { return slots_; }
 
-  /// The slots that the camera fills first.
-  [[nodiscard]] std::span<const std::uint32_t> firstSlots() const { return first_slots_; }
+  /// The slots in the camera's hands, `in_flight` at any time: a stream that ended in the midst of
+  /// some frames leaves exactly these to the next one.
+  /// Threads  Whoever starts and stops the camera, while it is stopped.
+  [[nodiscard]] std::span<const std::uint32_t> fillingSlots() const { return filling_; }
+
+  /// How many sets are kept.
+  [[nodiscard]] std::uint32_t sets() const RT_SAFE {
+    return static_cast<std::uint32_t>(places_.size());
+  }
 
   /// Makes the filled slot readable as frame.trigger, in place of the oldest set's frame, and
   /// returns the slot to fill next. Triggers only grow.
@@ -79,7 +87,7 @@ class CameraFrames {
   std::vector<StoredFrame> frames_;                 // beside slots_; guarded by the slot's state
   std::vector<std::atomic<std::uint64_t>> places_;  // set index -> trigger and slot
   rt::SlotPool pool_;
-  std::vector<std::uint32_t> first_slots_;
+  std::vector<std::uint32_t> filling_;   // in_flight of them: looked through at every frame
   std::atomic<std::uint64_t> first_{0};  // trigger of the first frame ever stored
   std::atomic<std::uint64_t> newest_{0};
 };

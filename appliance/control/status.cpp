@@ -6,11 +6,6 @@
 
 namespace appliance {
 
-std::string_view nameOf(CameraState state) {
-  constexpr std::array<std::string_view, 3> kNames = {"starting", "streaming", "lost"};
-  return kNames[static_cast<std::size_t>(state)];
-}
-
 std::string_view nameOf(hal::ScreenState state) {
   constexpr std::array<std::string_view, 3> kNames = {"showing", "no screen", "released"};
   return kNames[static_cast<std::size_t>(state)];
@@ -57,6 +52,7 @@ std::string toJson(const Status& status) {
   for (const CameraStatus& camera : status.cameras) {
     object["cameras"].push_back({{"name", camera.name},
                                  {"state", nameOf(camera.state)},
+                                 {"reason", camera.reason},
                                  {"frames_lost", camera.frames_lost},
                                  {"frames_incomplete", camera.frames_incomplete}});
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "appliance/capture/camera_state.h"
 #include "appliance/capture/genlock_status.h"
 #include "appliance/director/command.h"
 #include "appliance/director/shot.h"
@@ -13,15 +14,11 @@
 
 namespace appliance {
 
-enum class CameraState : std::uint8_t {
-  kStarting,   ///< not yet configured and streaming
-  kStreaming,  ///< frames arrive
-  kLost,       ///< frames should arrive and do not
-};
-
 struct CameraStatus {
   std::string name;  ///< as in the rig file
-  CameraState state = CameraState::kStarting;
+  CameraState state = CameraState::kConnecting;
+  CameraTrouble trouble = CameraTrouble::kNone;
+  std::string reason;  ///< what is wrong and what to do; empty: nothing
   std::uint64_t frames_lost = 0;
   std::uint64_t frames_incomplete = 0;
 };
@@ -49,7 +46,6 @@ struct Status {
   std::string source_path;     ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
 };
 
-[[nodiscard]] std::string_view nameOf(CameraState state);
 [[nodiscard]] std::string_view nameOf(hal::ScreenState state);
 
 /// One JSON object with the names of the fields above; views from 1.

@@ -46,12 +46,13 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
     for (const auto& camera : status.at("cameras")) {
       ++number;
       const auto state = camera.at("state").get<std::string>();
+      const auto reason = camera.at("reason").get<std::string>();
       const auto lost = camera.at("frames_lost").get<std::uint64_t>();
       const auto incomplete = camera.at("frames_incomplete").get<std::uint64_t>();
       if (state == "streaming" && lost == 0 && incomplete == 0) continue;
       text += "camera " + std::to_string(number) + " (" + camera.at("name").get<std::string>() +
-              "): " + state + ", " + std::to_string(lost) + " lost, " + std::to_string(incomplete) +
-              " incomplete\n";
+              "): " + state + (reason.empty() ? "" : ": " + reason) + "; " + std::to_string(lost) +
+              " lost, " + std::to_string(incomplete) + " incomplete\n";
     }
     for (const auto& line : status.at("degraded"))
       text += "degraded: " + line.get<std::string>() + "\n";

@@ -1,11 +1,11 @@
 #include "hal/aravis/aravis_camera.h"
 
 #include <atomic>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "hal/aravis/arrival_stamps.h"
+#include "hal/aravis/camera_probe.h"
 #include "hal/aravis/frame_id.h"
 #include "hal/aravis/gobject.h"
 #include "hal/aravis/profile_push.h"
@@ -13,6 +13,8 @@
 
 namespace hal::aravis {
 namespace {
+
+constexpr rt::Nanoseconds kAnswerTimeout = std::chrono::milliseconds(500);
 
 FrameStatus statusOf(ArvBuffer* buffer, const CameraProfile& profile) {
   switch (arv_buffer_get_status(buffer)) {
@@ -167,28 +169,37 @@ void AravisCamera::deliver() {
   arv_stream_push_buffer(stream_.get(), ARV_BUFFER(g_object_ref(buffers_[next].get())));
 }
 
-/// Aravis would start a thread for USB cameras and look for them; ours are on the network.
-void useNetworkOnly() {
-  static const bool once = [] {
-    for (guint i = 0; i < arv_get_n_interfaces(); ++i) {
-      const std::string_view interface = arv_get_interface_id(i);
-      if (interface != "GigEVision") arv_disable_interface(interface.data());
-    }
-    return true;
-  }();
-  (void)once;
+/// Opened by address over the interface that the routes name. Aravis' own opening by name looks
+/// through every interface and holds a lock meanwhile: one dead camera would delay all the others.
+Ref<ArvCamera> openByAddress(const std::string& address, GlibError& error) {
+  const std::string here = localAddressTowards(address);
+  const Ref<GInetAddress> interface{g_inet_address_new_from_string(here.c_str())};
+  const Ref<GInetAddress> camera{g_inet_address_new_from_string(address.c_str())};
+  if (!interface || !camera) return nullptr;
+  const Ref<ArvDevice> device{arv_gv_device_new(interface.get(), camera.get(), error.out())};
+  if (!device) return nullptr;
+  return Ref<ArvCamera>{arv_camera_new_with_device(device.get(), error.out())};
 }
 
 }  // namespace
 
 std::expected<std::unique_ptr<Camera>, std::string> openCamera(const CameraProfile& profile,
                                                                const rt::ThreadConfig& receive) {
-  useNetworkOnly();
+  const auto fail = [&](const std::string& what) {
+    return std::unexpected(profile.name + " (" + profile.address + "): " + what);
+  };
+  // A dead address costs a fraction of what Aravis waits for one.
+  if (probeCamera(profile.address, kAnswerTimeout).answer == CameraAnswer::kNone) {
+    return fail("no answer: check its cable, power and address");
+  }
   GlibError error;
-  Ref<ArvCamera> camera{arv_camera_new(profile.address.c_str(), error.out())};
+  Ref<ArvCamera> camera = openByAddress(profile.address, error);
   if (!camera) {
-    return std::unexpected(profile.name + " (" + profile.address + "): no answer (" +
-                           error.message() + "): check its cable, power and address");
+    return fail("no answer (" + error.message() + "): check its cable, power and address");
+  }
+  // A camera that another program controls opens all the same: to be looked at.
+  if (arv_gv_device_is_controller(ARV_GV_DEVICE(arv_camera_get_device(camera.get()))) == FALSE) {
+    return fail("another program controls it: end that program");
   }
   if (auto pushed = pushProfile(camera.get(), profile); !pushed) {
     return std::unexpected(pushed.error());
@@ -196,9 +207,8 @@ std::expected<std::unique_ptr<Camera>, std::string> openCamera(const CameraProfi
   const auto payload = arv_camera_get_payload(camera.get(), error.out());
   const auto wanted = std::size_t{profile.width_px} * profile.height_px;
   if (error || payload != wanted) {
-    return std::unexpected(profile.name + " (" + profile.address + "): sends frames of " +
-                           std::to_string(payload) + " bytes, its size and format ask for " +
-                           std::to_string(wanted));
+    return fail("sends frames of " + std::to_string(payload) +
+                " bytes, its size and format ask for " + std::to_string(wanted));
   }
   return std::make_unique<AravisCamera>(profile, receive, std::move(camera));
 }

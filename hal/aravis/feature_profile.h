@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,12 +17,22 @@ struct FeatureSetting {
   std::variant<std::string, std::int64_t, double> value;
   /// A camera without this feature is fine: it has nothing to switch off.
   bool optional = false;
-  std::string older_name = {};  ///< of the same feature, before the standard; empty: none
+  /// Under which other firmware has the same feature in the same unit.
+  std::vector<std::string> other_names = {};
+  /// Under which it may have something alike, in units that only its maker knows: never set.
+  std::vector<std::string> lookalikes = {};
 };
 
 /// The profile as settings in the order in which a camera accepts them: the format before
 /// the size, automatic functions off before their manual values, the trigger last.
 [[nodiscard]] std::vector<FeatureSetting> featureSettings(const CameraProfile& profile);
+
+/// The settings under the names that this camera has, less the optional ones that it has not.
+/// @p has: whether it has a feature of that name.
+///
+/// Errors   One line with everything that is missing, and what the camera has instead.
+[[nodiscard]] std::expected<std::vector<FeatureSetting>, std::string> namedFor(
+    std::vector<FeatureSetting> settings, const std::function<bool(const std::string&)>& has);
 
 /// Cameras round to their own increments: what was read back counts as the same within 1 %
 /// (of the wish, or of 1 where the wish is smaller).

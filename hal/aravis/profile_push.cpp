@@ -18,10 +18,27 @@ std::string shown(double v) {
   return text;
 }
 
+/// ", it knows Line1, Line2"; empty where the feature has no list of values.
+std::string knownValues(ArvDevice* device, const std::string& name) {
+  GlibError error;
+  guint count = 0;
+  const char** values = arv_device_dup_available_enumeration_feature_values_as_strings(
+      device, name.c_str(), &count, error.out());
+  std::string known;
+  for (guint i = 0; values != nullptr && i < count; ++i) {
+    known += (i == 0 ? ", it knows " : ", ") + std::string(values[i]);
+  }
+  g_free(static_cast<void*>(values));
+  return known;
+}
+
 Outcome set(ArvDevice* device, const std::string& name, const std::string& wanted) {
   GlibError error;
   arv_device_set_string_feature_value(device, name.c_str(), wanted.c_str(), error.out());
-  if (error) return "refuses " + name + " = " + wanted + " (" + error.message() + ")";
+  if (error) {
+    return "refuses " + name + " = " + wanted + " (" + error.message() + ")" +
+           knownValues(device, name);
+  }
   const char* got = arv_device_get_string_feature_value(device, name.c_str(), error.out());
   if (error) return "does not report " + name + " (" + error.message() + ")";
   if (got == nullptr || wanted != got) {
@@ -64,7 +81,16 @@ Outcome set(ArvDevice* device, const std::string& name, double wanted) {
   return std::nullopt;
 }
 
+/// Whether the camera has the feature at all.
 bool has(ArvDevice* device, const std::string& name) {
+  GlibError error;
+  ArvGcNode* node = arv_device_get_feature(device, name.c_str());
+  return ARV_IS_GC_FEATURE_NODE(node) &&
+         arv_gc_feature_node_is_implemented(ARV_GC_FEATURE_NODE(node), error.out()) != FALSE;
+}
+
+/// Whether it can be used now: what other features are set to may lock it away.
+bool isAvailable(ArvDevice* device, const std::string& name) {
   GlibError error;
   return arv_device_is_feature_available(device, name.c_str(), error.out()) != FALSE && !error;
 }
@@ -77,13 +103,13 @@ std::expected<void, std::string> pushProfile(ArvCamera* camera, const CameraProf
     return std::unexpected(profile.name + " (" + profile.address + "): " + what +
                            ": check the camera's model and its [cameras] settings");
   };
-  for (const FeatureSetting& setting : featureSettings(profile)) {
-    const bool older = !has(device, setting.name) && !setting.older_name.empty() &&
-                       has(device, setting.older_name);
-    const std::string& name = older ? setting.older_name : setting.name;
-    if (setting.optional && !older && !has(device, name)) continue;
-    const Outcome wrong =
-        std::visit([&](const auto& wanted) { return set(device, name, wanted); }, setting.value);
+  const auto settings = namedFor(featureSettings(profile),
+                                 [&](const std::string& name) { return has(device, name); });
+  if (!settings) return fail(settings.error());
+  for (const FeatureSetting& setting : *settings) {
+    if (setting.optional && !isAvailable(device, setting.name)) continue;
+    const Outcome wrong = std::visit(
+        [&](const auto& wanted) { return set(device, setting.name, wanted); }, setting.value);
     if (wrong) return fail(*wrong);
   }
 

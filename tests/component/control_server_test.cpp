@@ -56,7 +56,8 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     status.screen = screen_;
     status.frames_lost = 3;
     for (int i = 1; i <= 20; ++i)
-      status.cameras.push_back({"cam" + std::to_string(i), appliance::CameraState::kStreaming});
+      status.cameras.push_back({.name = "cam" + std::to_string(i),
+                                .state = appliance::CameraState::kStreaming});
     status.cameras[6].state = appliance::CameraState::kLost;
     status.cameras[6].frames_lost = 3;
     status.degraded = {"memory is not locked", "view 7 \"rear\" is lost"};

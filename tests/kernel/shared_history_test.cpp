@@ -60,7 +60,7 @@ TEST(SharedHistory, ARingOf300FramesIsAFewDmaBufsWithEveryFrameInItsPlace) {
               plain_ms.count());
 
   CameraFrames& frames = history->camera(0);
-  std::vector<std::uint32_t> queue(frames.firstSlots().begin(), frames.firstSlots().end());
+  std::vector<std::uint32_t> queue(frames.fillingSlots().begin(), frames.fillingSlots().end());
   for (std::uint64_t trigger = 1; trigger <= 320; ++trigger) {
     const std::uint32_t slot = queue.front();
     queue.erase(queue.begin());
@@ -102,7 +102,7 @@ TEST(SharedHistory, OutOfFileDescriptorsItServesUnsharedAndSaysWhatToRaise) {
   EXPECT_NE(history->notShared().find("raise LimitNOFILE"), std::string::npos)
       << history->notShared();
   CameraFrames& frames = history->camera(0);
-  (void)frames.store(frames.firstSlots()[0], {.trigger = 1});
+  (void)frames.store(frames.fillingSlots()[0], {.trigger = 1});
   const auto frame = frames.tryPin(1);
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->dma_buf.valid());
@@ -177,7 +177,7 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
   const std::jthread render([&loop](const std::stop_token& stop) { loop.run(stop); });
 
   CameraFrames& frames = history->camera(0);
-  std::uint32_t slot = frames.firstSlots()[0];
+  std::uint32_t slot = frames.fillingSlots()[0];
   for (const std::uint64_t trigger : {std::uint64_t{1}, std::uint64_t{2}}) {
     frames.slots()[slot].front() = static_cast<std::byte>(40 + trigger);
     board.edges.post(trigger, rt::now());

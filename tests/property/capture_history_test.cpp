@@ -29,7 +29,7 @@ std::unique_ptr<FrameHistory> makeHistory() {
 class Filler {
  public:
   explicit Filler(CameraFrames& frames)
-      : frames_(frames), queue_(frames.firstSlots().begin(), frames.firstSlots().end()) {}
+      : frames_(frames), queue_(frames.fillingSlots().begin(), frames.fillingSlots().end()) {}
 
   void deliver(std::uint64_t trigger) {
     const std::uint32_t slot = queue_.front();

@@ -74,7 +74,7 @@ class SharedHistory : public testing::Test {
 
   /// Stores triggers 1..last; each frame holds the number of its camera and trigger.
   static void fill(CameraFrames& frames, unsigned camera, std::uint64_t last) {
-    std::vector<std::uint32_t> queue(frames.firstSlots().begin(), frames.firstSlots().end());
+    std::vector<std::uint32_t> queue(frames.fillingSlots().begin(), frames.fillingSlots().end());
     for (std::uint64_t trigger = 1; trigger <= last; ++trigger) {
       const std::uint32_t slot = queue.front();
       queue.erase(queue.begin());
@@ -128,7 +128,7 @@ TEST(PrivateHistory, HasNoDmaBufs) {
   ASSERT_TRUE(history);
   EXPECT_TRUE((*history)->notShared().empty());
   CameraFrames& frames = (*history)->camera(0);
-  (void)frames.store(frames.firstSlots()[0], {.trigger = 1});
+  (void)frames.store(frames.fillingSlots()[0], {.trigger = 1});
   const auto frame = frames.tryPin(1);
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->dma_buf.valid());

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,7 +59,7 @@ TEST(FeatureProfile, DelaysTheTriggerAndForgivesOnlyAMissingZero) {
     return *std::ranges::find(settings, std::string("TriggerDelay"), &FeatureSetting::name);
   };
   EXPECT_EQ(std::get<double>(delayOf(12.5).value), 12.5);
-  EXPECT_EQ(delayOf(12.5).older_name, "TriggerDelayAbs");
+  EXPECT_THAT(delayOf(12.5).other_names, testing::ElementsAre("TriggerDelayAbs"));
   EXPECT_FALSE(delayOf(12.5).optional);
   EXPECT_TRUE(delayOf(0).optional) << "a camera without the feature does not delay";
 }
@@ -68,6 +69,69 @@ TEST(FeatureProfile, LeavesTheTriggerOffForACameraThatRunsFree) {
   const auto mode = std::ranges::find(settings, std::string("TriggerMode"), &FeatureSetting::name);
   ASSERT_NE(mode, settings.end());
   EXPECT_EQ(std::get<std::string>(mode->value), "Off");
+}
+
+/// What namedFor() makes of the profile in front of a camera with exactly these features.
+std::expected<std::vector<FeatureSetting>, std::string> named(std::set<std::string> features,
+                                                              hal::CameraProfile profile = {}) {
+  return namedFor(featureSettings(profile),
+                  [&](const std::string& name) { return features.contains(name); });
+}
+
+std::set<std::string> standardFeatures() {
+  std::set<std::string> features;
+  for (const FeatureSetting& setting : featureSettings({})) features.insert(setting.name);
+  return features;
+}
+
+std::set<std::string> without(std::set<std::string> features, const std::string& name) {
+  features.erase(name);
+  return features;
+}
+
+TEST(FeatureNames, AreTheStandardsWhereTheCameraHasThem) {
+  const auto settings = named(standardFeatures());
+  ASSERT_TRUE(settings) << settings.error();
+  EXPECT_EQ(settings->size(), featureSettings({}).size());
+}
+
+TEST(FeatureNames, AreAnotherFirmwaresWhereTheUnitIsTheSame) {
+  std::set<std::string> features = standardFeatures();
+  for (const auto& [standard, other] :
+       {std::pair{"ExposureTime", "ExposureTimeAbs"}, std::pair{"TriggerDelay", "TriggerDelayAbs"},
+        std::pair{"AcquisitionFrameRateEnable", "AcquisitionFrameRateEnabled"},
+        std::pair{"Gain", "GainAbs"}}) {
+    features.erase(standard);
+    features.insert(other);
+  }
+  const auto settings = named(features, {.gain_db = 6});
+  ASSERT_TRUE(settings) << settings.error();
+  std::set<std::string> names;
+  for (const FeatureSetting& setting : *settings) names.insert(setting.name);
+  EXPECT_EQ(names, features);
+}
+
+TEST(FeatureNames, LeaveOutWhatACameraNeedNotHave) {
+  const auto settings = named(without(standardFeatures(), "BalanceWhiteAuto"));
+  ASSERT_TRUE(settings) << settings.error();
+  EXPECT_EQ(settings->size(), featureSettings({}).size() - 1);
+}
+
+TEST(FeatureNames, TellEverythingThatIsMissingAndWhatTheCameraHasInstead) {
+  auto features = without(without(standardFeatures(), "ExposureTime"), "TriggerSource");
+  features.insert("ExposureTimeRaw");
+  const auto settings = named(features);
+  ASSERT_FALSE(settings);
+  EXPECT_EQ(settings.error(),
+            "its firmware has no ExposureTime or ExposureTimeAbs (it has ExposureTimeRaw, in units "
+            "that only its maker knows), no TriggerSource");
+}
+
+TEST(FeatureNames, NeverSetAGainInUnknownUnits) {
+  auto features = without(standardFeatures(), "Gain");
+  features.insert("GainRaw");
+  EXPECT_TRUE(named(features, {.gain_db = 0})) << "as switched on";
+  EXPECT_FALSE(named(features, {.gain_db = 6}));
 }
 
 TEST(FeatureProfile, AcceptsACamerasRoundingButNotAnotherValue) {

@@ -8,6 +8,7 @@
 namespace {
 
 using appliance::CameraState;
+using appliance::CameraTrouble;
 using appliance::CameraWatch;
 using std::chrono::milliseconds;
 using testing::ElementsAre;
@@ -26,7 +27,13 @@ class CameraWatchOfTwo : public testing::Test {
   }
 
   void setStates(CameraState state) {
-    for (auto& camera : status.cameras) camera.state = state;
+    for (std::size_t i = 0; i < status.cameras.size(); ++i) set(i, state);
+  }
+  void set(std::size_t i, CameraState state) {
+    const bool lost = state == CameraState::kLost;
+    status.cameras[i].state = state;
+    status.cameras[i].trouble = lost ? CameraTrouble::kNoAnswer : CameraTrouble::kNone;
+    status.cameras[i].reason = lost ? "no frames: check its cable" : "";
   }
   void lose(std::size_t camera, std::uint64_t frames) {
     status.cameras[camera].frames_lost += frames;
@@ -44,12 +51,38 @@ TEST_F(CameraWatchOfTwo, SaysNothingWhileAllIsWell) {
 }
 
 TEST_F(CameraWatchOfTwo, TellsASilentCameraOnceAndItsReturnOnce) {
-  status.cameras[1].state = CameraState::kLost;
+  set(1, CameraState::kLost);
   EXPECT_THAT(look(100), ElementsAre(StartsWith("camera 2 (right): no frames: ")));
   EXPECT_THAT(look(200), IsEmpty());
-  status.cameras[1].state = CameraState::kStreaming;
-  EXPECT_THAT(look(300), ElementsAre("camera 2 (right): frames again"));
+  set(1, CameraState::kStreaming);
+  EXPECT_THAT(look(300), ElementsAre("camera 2 (right): a frame for every trigger again"));
   EXPECT_THAT(look(400), IsEmpty());
+}
+
+TEST_F(CameraWatchOfTwo, WaitsUntilTheReasonOfASilenceIsKnown) {
+  status.cameras[1].state = CameraState::kLost;
+  EXPECT_THAT(look(100), IsEmpty());
+  set(1, CameraState::kLost);
+  EXPECT_THAT(look(200), ElementsAre("camera 2 (right): no frames: check its cable"));
+}
+
+TEST_F(CameraWatchOfTwo, SaysNothingOfTheSameTroubleAgainUntilTheCameraStreams) {
+  set(1, CameraState::kLost);
+  EXPECT_THAT(look(100), ElementsAre(HasSubstr("check its cable")));
+  set(1, CameraState::kRecovering);
+  EXPECT_THAT(look(200), IsEmpty());
+  set(1, CameraState::kLost);
+  status.cameras[1].reason = "no frames since 7.2 s: check its cable";
+  EXPECT_THAT(look(300), IsEmpty());
+}
+
+TEST_F(CameraWatchOfTwo, TellsWhenALostCamerasTroubleTurnsIntoAnother) {
+  set(1, CameraState::kLost);
+  EXPECT_THAT(look(100), ElementsAre(HasSubstr("check its cable")));
+  status.cameras[1].trouble = CameraTrouble::kHeld;
+  status.cameras[1].reason = "held by another program";
+  EXPECT_THAT(look(200), ElementsAre("camera 2 (right): held by another program"));
+  EXPECT_THAT(look(300), IsEmpty());
 }
 
 TEST_F(CameraWatchOfTwo, TellsEverySilenceHoweverSoonItFollows) {
@@ -102,13 +135,14 @@ TEST_F(CameraWatchOfTwo, DoesNotCountWhatASilentCameraOwes) {
   EXPECT_THAT(look(100), ElementsAre(HasSubstr(": 1 frames lost")));
   lose(1, 6);
   EXPECT_THAT(look(200), IsEmpty());
-  status.cameras[1].state = CameraState::kLost;
+  set(1, CameraState::kLost);
   lose(1, 4);
   EXPECT_THAT(look(300), ElementsAre(HasSubstr("no frames")));
   lose(1, 4000);
   EXPECT_THAT(look(60'000), IsEmpty());
-  status.cameras[1].state = CameraState::kStreaming;
-  EXPECT_THAT(look(60'100), ElementsAre(HasSubstr("frames again"), HasSubstr(": 6 frames lost")));
+  set(1, CameraState::kStreaming);
+  EXPECT_THAT(look(60'100),
+              ElementsAre(HasSubstr("every trigger again"), HasSubstr(": 6 frames lost")));
 }
 
 TEST(CameraWatch, DoesNotCountWhatIsLostBeforeACameraStreams) {

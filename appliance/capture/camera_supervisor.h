@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+#include "appliance/capture/camera_machine.h"
+#include "appliance/capture/camera_state.h"
+#include "appliance/capture/collector.h"
+#include "appliance/capture/edge_board.h"
+#include "appliance/capture/frame_history.h"
+#include "hal/camera.h"
+#include "hal/camera_probe.h"
+#include "rt/thread.h"
+
+namespace appliance {
+
+/// How one camera is reached.
+struct CameraDoor {
+  /// Waits no longer than the given time.
+  std::function<hal::CameraProbe(rt::Nanoseconds)> probe;
+  /// May take seconds where the camera dies meanwhile.
+  std::function<std::expected<std::unique_ptr<hal::Camera>, std::string>()> open;
+};
+
+/// Keeps one camera of the rig streaming, however often it dies: carries out what its
+/// CameraMachine decides, on a thread of its own, so that a dead camera's long silences delay
+/// nobody. The slots that the camera was filling when it died are the ones it fills first when it
+/// is back.
+///
+/// Threads  start(), requestStop(), stop(): the owner. health(): any. The camera, and the collector
+///          while the camera is stopped, belong to its thread, `watchNN`.
+/// RT       Not safe. The receive threads never wait for it.
+/// Memory   Everything given outlives the supervisor.
+class CameraSupervisor {
+ public:
+  CameraSupervisor(CameraDoor door, Collector& collector, CameraFrames& frames,
+                   const EdgeBoard& edges)
+      : door_(std::move(door)), collector_(collector), frames_(frames), edges_(edges) {}
+  ~CameraSupervisor() { stop(); }
+  CameraSupervisor(const CameraSupervisor&) = delete;
+  CameraSupervisor& operator=(const CameraSupervisor&) = delete;
+
+  /// @p camera: from 0, for the thread's name. Errors: no thread could be made.
+  [[nodiscard]] std::expected<void, std::string> start(std::size_t camera);
+
+  /// Until the first attempt to stream has ended, well or not; false at @p deadline.
+  [[nodiscard]] bool waitSettled(rt::Timestamp deadline);
+
+  /// The camera is let go as soon as it can be. stop() waits for that: seconds for a dead one, so
+  /// ask all before waiting for one.
+  void requestStop();
+  void stop();
+
+  [[nodiscard]] CameraHealth health() const;
+  /// Since its last stored frame; nothing before the first.
+  [[nodiscard]] std::optional<rt::Nanoseconds> silentFor(rt::Timestamp now) const;
+
+ private:
+  void run(const std::stop_token& stop);
+  void carryOut(CameraAction action);
+  [[nodiscard]] CameraFacts facts() const;
+
+  CameraDoor door_;
+  Collector& collector_;
+  CameraFrames& frames_;
+  const EdgeBoard& edges_;
+
+  CameraMachine machine_;                // the thread's
+  std::unique_ptr<hal::Camera> camera_;  // likewise
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  CameraHealth health_;   // guarded by mutex_
+  bool settled_ = false;  // likewise
+  rt::Thread thread_;     // last: joined before anything else goes
+};
+
+}  // namespace appliance

@@ -1,0 +1,66 @@
+#include "appliance/device_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace appliance {
+
+rt::Nanoseconds periodOf(double rate_hz) {
+  return rt::Nanoseconds{std::llround(1e9 / rate_hz)};
+}
+
+rt::Nanoseconds microseconds(double us) {
+  return rt::Nanoseconds{std::llround(us * 1e3)};
+}
+
+double commonDelay_us(const Config::Cameras& config) {
+  return config.opto_delay_us.empty() ? 0 : std::ranges::max(config.opto_delay_us);
+}
+
+namespace {
+
+double triggerDelay_us(const Config::Cameras& config, std::size_t camera) {
+  return config.opto_delay_us.empty() ? 0 : commonDelay_us(config) - config.opto_delay_us[camera];
+}
+
+}  // namespace
+
+hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& camera,
+                             std::size_t index) {
+  return {.name = camera.name,
+          .address = config.addresses[index],
+          .width_px = camera.width_px,
+          .height_px = camera.height_px,
+          .pixel_format = config.pixel_format,
+          .exposure_us = config.exposure_us,
+          .gain_db = config.gain_db,
+          .white_balance_rgb = config.white_balance_rgb,
+          .trigger_source = config.trigger_source,
+          .trigger_delay_us = triggerDelay_us(config, index),
+          .packet_size_bytes = config.packet_size_bytes,
+          .packet_delay_ns = config.packet_delay_ns,
+          .socket_buffer_bytes = config.socket_buffer_bytes,
+          .packet_timeout_us = config.packet_timeout_us,
+          .frame_retention_us = config.frame_retention_us};
+}
+
+std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
+  std::vector<rt::Nanoseconds> ladder;
+  for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
+  return ladder;
+}
+
+rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how) {
+  return {
+      .name = std::move(name), .policy = how.policy, .priority = how.priority, .cpus = how.cpus};
+}
+
+std::string receiveThreadName(std::size_t camera) {
+  char name[16];
+  std::snprintf(name, sizeof name, "recv%02zu", (camera + 1) % 100);
+  return name;
+}
+
+}  // namespace appliance
