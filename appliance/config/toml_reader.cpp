@@ -12,6 +12,8 @@
 
 #include <toml++/toml.h>
 
+#include "rt/printable.h"
+
 namespace appliance {
 namespace {
 
@@ -108,8 +110,8 @@ struct TomlFile::Content {
 
   void note(std::uint32_t line, const std::string& label, const std::string& message) {
     if (fault) return;  // the first one is the cause, later ones may follow from it
-    fault =
-        name + ":" + std::to_string(line) + ": " + (label.empty() ? "" : label + ": ") + message;
+    fault = rt::printable(name + ":" + std::to_string(line) + ": " +
+                          (label.empty() ? "" : label + ": ") + message);
   }
 };
 
@@ -138,7 +140,7 @@ std::expected<TomlFile, std::string> TomlFile::parse(std::string_view text, std:
     content->root = toml::parse(text, content->name);
   } catch (const toml::parse_error& error) {
     return std::unexpected(content->name + ":" + std::to_string(error.source().begin.line) +
-                           ": not valid TOML: " + std::string(error.description()) +
+                           ": not valid TOML: " + rt::printable(error.description()) +
                            "; correct this line");
   }
   return TomlFile(std::move(content));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "rt/printable.h"
+
 namespace appliance {
 namespace {
 
@@ -25,7 +27,7 @@ Requested requestMode(std::string_view mode, const Status& now) {
   }
   if (mode == "delayed")
     return std::unexpected("mode delayed is entered by its delay: set a delay in milliseconds");
-  return std::unexpected("unknown mode \"" + std::string(mode) +
+  return std::unexpected("unknown mode \"" + rt::printable(mode) +
                          "\": the modes are live, delayed, frozen and sweep");
 }
 

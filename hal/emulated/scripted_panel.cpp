@@ -9,6 +9,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "rt/printable.h"
+
 namespace hal::emulated {
 namespace {
 
@@ -72,7 +74,7 @@ std::expected<std::vector<ScriptedChange>, std::string> parsePanelScript(std::st
   for (int number = 1; std::getline(lines, line); ++number) {
     if (auto parsed = parseLine(line, changes); !parsed) {
       return std::unexpected(std::string(origin) + ":" + std::to_string(number) + ": " +
-                             parsed.error());
+                             rt::printable(parsed.error()));
     }
   }
   std::ranges::stable_sort(changes, {}, &ScriptedChange::after);
