@@ -11,9 +11,6 @@
 namespace appliance {
 namespace {
 
-constexpr std::string_view kHeader =
-    "camera,frame_id,trigger,trigger_edge_ns,exposure_end_ns,first_packet_ns,last_packet_ns";
-
 std::optional<std::array<std::int64_t, 7>> sevenNumbers(std::string_view line) {
   std::array<std::int64_t, 7> numbers{};
   const char* at = line.data();
@@ -30,25 +27,31 @@ std::optional<std::array<std::int64_t, 7>> sevenNumbers(std::string_view line) {
 
 }  // namespace
 
+std::optional<SentFrame> parseWireLine(std::string_view line) {
+  const auto n = sevenNumbers(line);
+  if (!n || !std::in_range<std::uint32_t>((*n)[0])) return std::nullopt;
+  return SentFrame{.camera = static_cast<std::uint32_t>((*n)[0]),
+                   .frame_id = static_cast<std::uint64_t>((*n)[1]),
+                   .trigger = static_cast<std::uint64_t>((*n)[2]),
+                   .trigger_edge = rt::fromNs((*n)[3]),
+                   .exposure_end = rt::fromNs((*n)[4]),
+                   .first_packet = rt::fromNs((*n)[5]),
+                   .last_packet = rt::fromNs((*n)[6])};
+}
+
 std::expected<std::vector<SentFrame>, std::string> readWireLog(std::istream& in,
                                                                const std::string& name) {
   std::string line;
-  if (!std::getline(in, line) || line != kHeader)
+  if (!std::getline(in, line) || line != kWireLogHeader)
     return std::unexpected(name + ":1: not a wire log of kagami-emulator");
   std::vector<SentFrame> frames;
   for (std::size_t count = 2; std::getline(in, line); ++count) {
     if (in.eof()) break;
-    const auto n = sevenNumbers(line);
-    if (!n || !std::in_range<std::uint32_t>((*n)[0]))
+    const auto frame = parseWireLine(line);
+    if (!frame)
       return std::unexpected(name + ":" + std::to_string(count) +
                              ": not seven whole numbers with commas between");
-    frames.push_back({.camera = static_cast<std::uint32_t>((*n)[0]),
-                      .frame_id = static_cast<std::uint64_t>((*n)[1]),
-                      .trigger = static_cast<std::uint64_t>((*n)[2]),
-                      .trigger_edge = rt::fromNs((*n)[3]),
-                      .exposure_end = rt::fromNs((*n)[4]),
-                      .first_packet = rt::fromNs((*n)[5]),
-                      .last_packet = rt::fromNs((*n)[6])});
+    frames.push_back(*frame);
   }
   return frames;
 }

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <expected>
 #include <istream>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt/clock.h"
@@ -28,6 +30,13 @@ struct EmulatorStatistics {
   std::uint64_t frames_sent = 0;
   double cpu_seconds = 0;
 };
+
+/// A wire log's first line.
+inline constexpr std::string_view kWireLogHeader =
+    "camera,frame_id,trigger,trigger_edge_ns,exposure_end_ns,first_packet_ns,last_packet_ns";
+
+/// Any other line of it, without its newline; nothing when it is none.
+[[nodiscard]] std::optional<SentFrame> parseWireLine(std::string_view line);
 
 /// Errors   One line "NAME:LINE: what". A last line without its newline (the emulator was killed)
 ///          is left out.

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "appliance/trace/record_fields.h"
+#include "rt/printable.h"
 
 namespace appliance {
 namespace {
@@ -70,6 +71,11 @@ class LineAppender {
   }
 
   std::string& text_;
+};
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
 };
 
 json toJson(const TracedThread& grant);
@@ -189,37 +195,30 @@ struct JsonReader {
 };
 
 template <class Record>
-std::string readInto(const json& object, Record& record) {
+std::expected<TraceLine, std::string> readAs(const json& object) {
+  Record record;
   std::string error;
   visitFields(record, JsonReader{object, error});
-  return error;
+  if (!error.empty()) return std::unexpected(error);
+  return record;
 }
 
-/// Adds one line to the trace; what is wrong with it, or nothing.
-std::string takeLine(const std::string& line, bool first, Trace& trace) {
-  const json object = json::parse(line, nullptr, false);
-  if (!object.is_object()) return "this is not a JSON object";
-  const std::string kind = object.contains("record") && object["record"].is_string()
-                               ? object["record"].get<std::string>()
-                               : "";
-  if (first != (kind == "run"))
+/// Puts one record where it belongs; what is wrong with its place, or nothing.
+std::string take(TraceLine line, bool first, Trace& trace) {
+  if (first != std::holds_alternative<RunRecord>(line))
     return first ? "the first line of a trace is its run record" : "a second run record";
-  if (first) {
-    const auto format = object.find("format");
-    if (format == object.end() || *format != kTraceFormat)
-      return "not a trace of format " + std::to_string(kTraceFormat);
-    return readInto(object, trace.run);
-  }
   if (trace.summary) return "a record after the summary";
-  if (kind == kKind<TriggerRecord>) return readInto(object, trace.triggers.emplace_back());
-  if (kind == kKind<FrameRecord>) return readInto(object, trace.frames.emplace_back());
-  if (kind == kKind<SetRecord>) return readInto(object, trace.sets.emplace_back());
-  if (kind == kKind<PictureRecord>) return readInto(object, trace.pictures.emplace_back());
-  if (kind == kKind<FlipRecord>) return readInto(object, trace.flips.emplace_back());
-  if (kind == kKind<LoopbackRecord>) return readInto(object, trace.loopbacks.emplace_back());
-  if (kind == kKind<GenlockRecord>) return readInto(object, trace.genlocks.emplace_back());
-  if (kind == "summary") return readInto(object, trace.summary.emplace());
-  return "unknown record '" + kind + "'";
+  std::visit(Overloaded{[&](RunRecord& run) { trace.run = std::move(run); },
+                        [&](TriggerRecord& trigger) { trace.triggers.push_back(trigger); },
+                        [&](FrameRecord& frame) { trace.frames.push_back(frame); },
+                        [&](SetRecord& set) { trace.sets.push_back(set); },
+                        [&](PictureRecord& picture) { trace.pictures.push_back(picture); },
+                        [&](FlipRecord& flip) { trace.flips.push_back(flip); },
+                        [&](LoopbackRecord& edge) { trace.loopbacks.push_back(edge); },
+                        [&](GenlockRecord& genlock) { trace.genlocks.push_back(genlock); },
+                        [&](SummaryRecord& summary) { trace.summary = summary; }},
+             line);
+  return {};
 }
 
 }  // namespace
@@ -262,6 +261,29 @@ void appendLine(std::string& text, const TraceRecord& record) {
       record);
 }
 
+std::expected<TraceLine, std::string> parseTraceLine(std::string_view line) {
+  const json object = json::parse(line, nullptr, false);
+  if (!object.is_object()) return std::unexpected("this is not a JSON object");
+  const auto record = object.find("record");
+  const std::string kind =
+      record != object.end() && record->is_string() ? record->get<std::string>() : "";
+  if (kind == "run") {
+    const auto format = object.find("format");
+    if (format == object.end() || *format != kTraceFormat)
+      return std::unexpected("not a trace of format " + std::to_string(kTraceFormat));
+    return readAs<RunRecord>(object);
+  }
+  if (kind == kKind<TriggerRecord>) return readAs<TriggerRecord>(object);
+  if (kind == kKind<FrameRecord>) return readAs<FrameRecord>(object);
+  if (kind == kKind<SetRecord>) return readAs<SetRecord>(object);
+  if (kind == kKind<PictureRecord>) return readAs<PictureRecord>(object);
+  if (kind == kKind<FlipRecord>) return readAs<FlipRecord>(object);
+  if (kind == kKind<LoopbackRecord>) return readAs<LoopbackRecord>(object);
+  if (kind == kKind<GenlockRecord>) return readAs<GenlockRecord>(object);
+  if (kind == "summary") return readAs<SummaryRecord>(object);
+  return std::unexpected("unknown record '" + rt::printable(kind) + "'");
+}
+
 std::expected<Trace, std::string> readTrace(std::istream& in, const std::string& name) {
   Trace trace;
   std::string line;
@@ -270,7 +292,9 @@ std::expected<Trace, std::string> readTrace(std::istream& in, const std::string&
     const bool cut_off = in.eof();
     ++count;
     if (cut_off && count > 1) break;
-    const std::string wrong = takeLine(line, count == 1, trace);
+    auto record = parseTraceLine(line);
+    const std::string wrong =
+        record ? take(std::move(*record), count == 1, trace) : std::move(record.error());
     if (!wrong.empty()) return std::unexpected(name + ":" + std::to_string(count) + ": " + wrong);
   }
   if (count == 0) return std::unexpected(name + ": this trace is empty");

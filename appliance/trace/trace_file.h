@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "appliance/trace/records.h"
@@ -27,6 +28,13 @@ struct Trace {
   std::vector<GenlockRecord> genlocks;
   std::optional<SummaryRecord> summary;  ///< nothing: the daemon did not come to its end
 };
+
+/// Any line of a trace.
+using TraceLine = std::variant<RunRecord, TriggerRecord, FrameRecord, SetRecord, PictureRecord,
+                               FlipRecord, LoopbackRecord, GenlockRecord, SummaryRecord>;
+
+/// One line, without its newline. Errors: what is wrong with it.
+[[nodiscard]] std::expected<TraceLine, std::string> parseTraceLine(std::string_view line);
 
 /// The line of one record, newline included.
 [[nodiscard]] std::string toLine(const RunRecord& run);
