@@ -20,10 +20,14 @@ extern char** environ;
 
 namespace test {
 
+/// In its own group a child does not hear the Ctrl-C of our terminal.
+enum class ProcessGroup : bool { kOurs, kOwn };
+
 /// A program of ours as a child: output into a file, ended with the object.
 class ChildProcess {
  public:
-  ChildProcess(const std::vector<std::string>& command, std::filesystem::path output)
+  ChildProcess(const std::vector<std::string>& command, std::filesystem::path output,
+               ProcessGroup group = ProcessGroup::kOurs)
       : output_(std::move(output)) {
     std::vector<char*> argv;
     for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
@@ -33,7 +37,11 @@ class ChildProcess {
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output_.c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0644);
     posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    if (posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    if (group == ProcessGroup::kOwn) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    if (posix_spawn(&pid_, argv[0], &actions, &attributes, argv.data(), environ) != 0) pid_ = -1;
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
   }
   ~ChildProcess() {

@@ -1,9 +1,12 @@
 #include "hal/emulated/rig/rig_file.h"
 
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <toml++/toml.h>
+
+#include "rt/printable.h"
 
 namespace emulator {
 namespace {
@@ -37,7 +40,7 @@ std::expected<CameraModel, std::string> readCamera(const std::filesystem::path& 
   const std::int64_t width = two ? (*size)[0].value_or(std::int64_t{0}) : 0;
   const std::int64_t height = two ? (*size)[1].value_or(std::int64_t{0}) : 0;
   if (width <= 0 || height <= 0 || width > kLargestSidePx || height > kLargestSidePx) {
-    return std::unexpected(place(path, table) + "camera \"" + camera.name +
+    return std::unexpected(place(path, table) + "camera \"" + rt::printable(camera.name) +
                            "\" needs image_size_px = [width, height], whole numbers");
   }
   camera.image_size = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
@@ -77,32 +80,38 @@ std::expected<void, std::string> writeRigFile(const std::filesystem::path& path,
 }
 
 std::expected<RigModel, std::string> readRigFile(const std::filesystem::path& path) {
-  std::error_code error_code;
-  if (!std::filesystem::exists(path, error_code)) {
+  std::ifstream file(path);
+  if (!file) {
     return std::unexpected("there is no " + path.string() + ": the folder is no scene");
   }
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return parseRigFile(text, path);
+}
+
+std::expected<RigModel, std::string> parseRigFile(std::string_view text,
+                                                  const std::filesystem::path& name) {
   toml::table root;
   try {
-    root = toml::parse_file(path.string());
+    root = toml::parse(text, name.string());
   } catch (const toml::parse_error& error) {
-    return std::unexpected(path.string() + ":" + std::to_string(error.source().begin.line) + ": " +
-                           std::string(error.description()));
+    return std::unexpected(name.string() + ":" + std::to_string(error.source().begin.line) + ": " +
+                           rt::printable(error.description()));
   }
   if (root["format"].value<std::int64_t>() != kFormat) {
-    return std::unexpected(path.string() + ": format = 1 is missing: not a rig this version reads");
+    return std::unexpected(name.string() + ": format = 1 is missing: not a rig this version reads");
   }
   RigModel rig;
   rig.name = root["name"].value_or(std::string());
   const auto* cameras = root["camera"].as_array();
   if (cameras == nullptr || cameras->empty()) {
-    return std::unexpected(path.string() + ": there is no [[camera]]");
+    return std::unexpected(name.string() + ": there is no [[camera]]");
   }
   for (const toml::node& node : *cameras) {
     const auto* table = node.as_table();
     if (table == nullptr) {
-      return std::unexpected(place(path, node) + "camera must be a list of tables, [[camera]]");
+      return std::unexpected(place(name, node) + "camera must be a list of tables, [[camera]]");
     }
-    auto camera = readCamera(path, *table);
+    auto camera = readCamera(name, *table);
     if (!camera) return std::unexpected(camera.error());
     rig.cameras.push_back(std::move(*camera));
   }

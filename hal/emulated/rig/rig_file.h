@@ -4,6 +4,7 @@
 #include <expected>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/emulated/rig/registers.h"
@@ -35,5 +36,8 @@ struct RigModel {
 
 /// The names and image sizes of a rig.toml: all that a scene needs.
 [[nodiscard]] std::expected<RigModel, std::string> readRigFile(const std::filesystem::path& path);
+/// The same from memory; @p name stands in messages in place of a path.
+[[nodiscard]] std::expected<RigModel, std::string> parseRigFile(std::string_view text,
+                                                                const std::filesystem::path& name);
 
 }  // namespace emulator

@@ -1,0 +1,29 @@
+#include <cmath>
+
+#include "appliance/geometry/rig_file.h"
+#include "tests/fuzz/fuzz_target.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto rig = appliance::parseRig(fuzz::text(data, size), "rig.toml");
+  if (!rig) {
+    fuzz::requireOneLine(rig.error());
+    return 0;
+  }
+  fuzz::require(!rig->cameras.empty() && rig->cameras.size() <= appliance::kMaxCameras,
+                "a rig has cameras, and no more than arrays hold");
+  fuzz::require(rig->target_m.allFinite(), "the target is finite");
+  fuzz::require(std::isfinite(rig->reference_focal_px) && rig->reference_focal_px > 0 &&
+                    std::isfinite(rig->reference_distance_m) && rig->reference_distance_m > 0,
+                "the references are lengths");
+  for (const appliance::RigCamera& camera : rig->cameras) {
+    const Eigen::Matrix3d& R = camera.R_cam_rig;
+    fuzz::require(R.allFinite() && camera.t_cam_rig_m.allFinite(), "the pose is finite");
+    fuzz::require(
+        (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 && R.determinant() > 0,
+        "rotations are proper");
+    fuzz::require((R * rig->target_m + camera.t_cam_rig_m).z() > 0,
+                  "the target lies in front of every camera");
+    fuzz::require(camera.width_px > 0 && camera.height_px > 0, "pictures have a size");
+  }
+  return 0;
+}

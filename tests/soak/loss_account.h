@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "appliance/tools/emulator_files.h"
+#include "appliance/trace/records.h"
+#include "rt/clock.h"
+
+namespace soak {
+
+/// What became of a frame that the box did not store.
+enum class LossCause : std::uint8_t {
+  kNotSent,       ///< the camera sent none for this trigger
+  kNeverCame,     ///< sent, but the box has no record of it
+  kIncomplete,    ///< came with packets missing
+  kWrongSize,     ///< came in another size than configured
+  kUnattributed,  ///< came, but near no trigger edge, or aborted
+};
+inline constexpr std::size_t kLossCauses = 5;
+[[nodiscard]] std::string_view nameOf(LossCause cause);
+
+struct LostFrame {
+  std::uint32_t camera = 0;
+  LossCause cause = LossCause::kNeverCame;
+  std::uint64_t trigger = 0;
+  rt::Timestamp edge;
+};
+
+/// A frame that was stored as that of a trigger which the camera did not send it for.
+struct MisattributedFrame {
+  std::uint32_t camera = 0;
+  std::uint64_t trigger = 0;
+  rt::Timestamp edge;
+};
+
+/// Holds a run's trace against the wire log of its cameras while both are being written: which
+/// frames were lost, and what became of each. Pure.
+///
+/// Memory   What the two streams have not both passed yet, and the lost frames.
+class LossAccount {
+ public:
+  explicit LossAccount(std::uint32_t cameras) : cameras_(cameras) {}
+
+  /// Each kind in the order of its file.
+  void triggerFired(const appliance::TriggerRecord& trigger);
+  void frameArrived(const appliance::FrameRecord& frame);
+  void frameSent(const appliance::SentFrame& frame);
+
+  /// The streams have ended. Triggers after @p last_edge are not judged: their frames may have been
+  /// on the wire when the cameras were stopped.
+  void finish(rt::Timestamp last_edge);
+
+  /// Triggers of this long after the first one are not judged: cameras find their pace.
+  static constexpr rt::Nanoseconds kSettling = std::chrono::seconds(2);
+  /// No frame is on its way for longer.
+  static constexpr rt::Nanoseconds kLongestWay = std::chrono::seconds(2);
+
+  [[nodiscard]] const std::vector<LostFrame>& lost() const { return lost_; }
+  [[nodiscard]] const std::vector<MisattributedFrame>& misattributed() const {
+    return misattributed_;
+  }
+  [[nodiscard]] std::uint64_t triggersJudged() const { return triggers_judged_; }
+  [[nodiscard]] std::uint64_t framesStored() const { return frames_stored_; }
+  [[nodiscard]] std::uint64_t lostWhileSettling() const { return lost_while_settling_; }
+
+ private:
+  struct Arrived {
+    std::uint64_t trigger;  // 0: not stored
+    std::uint64_t wire_id;
+    hal::FrameStatus status;
+    rt::Timestamp at;
+  };
+  struct Camera {
+    std::deque<appliance::SentFrame> sent;
+    std::deque<Arrived> stored;
+    std::deque<Arrived> refused;
+  };
+
+  void judgePassed();
+  void judge(const appliance::TriggerRecord& trigger);
+  [[nodiscard]] static std::optional<std::uint64_t> sentFor(
+      Camera& camera, const appliance::TriggerRecord& trigger);
+  [[nodiscard]] static std::optional<std::uint64_t> storedFor(Camera& camera,
+                                                              std::uint64_t trigger);
+  [[nodiscard]] static LossCause causeOf(Camera& camera, const appliance::TriggerRecord& trigger,
+                                         std::uint64_t wire_id);
+
+  std::vector<Camera> cameras_;
+  std::deque<appliance::TriggerRecord> triggers_;
+  std::optional<rt::Timestamp> first_edge_;
+  rt::Timestamp trace_passed_;
+  rt::Timestamp wire_passed_;
+  std::vector<LostFrame> lost_;
+  std::vector<MisattributedFrame> misattributed_;
+  std::uint64_t triggers_judged_ = 0;
+  std::uint64_t frames_stored_ = 0;
+  std::uint64_t lost_while_settling_ = 0;
+};
+
+}  // namespace soak
