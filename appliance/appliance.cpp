@@ -152,8 +152,11 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
   };
   const rt::Nanoseconds camera_delay =
       microseconds(commonDelay_us(config_.cameras) + config_.cameras.exposure_us);
+  const CameraPace pace = config_.cameras.trigger_source == hal::kFreeRunning
+                              ? CameraPace::kFreeRunning
+                              : CameraPace::kTriggered;
   for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
-    collectors_.push_back(std::make_unique<Collector>(i, Association{period_, camera_delay},
+    collectors_.push_back(std::make_unique<Collector>(i, Association{period_, camera_delay, pace},
                                                       history_->camera(i), board_,
                                                       producer(kFirstCameraTrace + i)));
   }
@@ -352,7 +355,7 @@ std::vector<CameraStatus> Appliance::cameraStatuses() const {
                        .trouble = health.trouble,
                        .reason = reasonOf(health, supervisors_[i]->silentFor(now)),
                        .frames_lost = counts.missing,
-                       .frames_incomplete = counts.incomplete});
+                       .frames_incomplete = counts.incomplete + counts.wrong_size});
   }
   return cameras;
 }
@@ -392,7 +395,7 @@ SummaryRecord Appliance::summary() const {
   for (const auto& collector : collectors_) {
     const CollectorCounts counts = collector->counts();
     record.frames_lost += counts.missing;
-    record.frames_incomplete += counts.incomplete;
+    record.frames_incomplete += counts.incomplete + counts.wrong_size;
     record.frames_unattributed += counts.unattributed;
   }
   return record;

@@ -9,9 +9,11 @@
 
 namespace appliance {
 
-/// Names the trigger of a frame by time: the edge nearest to the leader's arrival minus the
-/// camera's known delay, if it is nearer than half a period. A camera that ignored a trigger
-/// counts its frames without a gap, so frame ids cannot name it; time can.
+/// Whether the trigger line starts a camera's exposures.
+enum class CameraPace : std::uint8_t { kTriggered, kFreeRunning };
+
+/// Which trigger edge an instant belongs to. What a frame's instants are worth as evidence is
+/// FrameNamer's business.
 ///
 /// Threads  Any, against a board that is being written.
 /// RT       Bounded: looks at the few newest edges.
@@ -19,16 +21,32 @@ class Association {
  public:
   /// @p period: between triggers. @p camera_delay: from the edge to the leader's arrival on an
   /// idle wire (opto-isolator, trigger delay, exposure, read-out start).
-  Association(rt::Nanoseconds period, rt::Nanoseconds camera_delay)
-      : period_(period), camera_delay_(camera_delay) {}
+  Association(rt::Nanoseconds period, rt::Nanoseconds camera_delay,
+              CameraPace pace = CameraPace::kTriggered)
+      : period_(period), camera_delay_(camera_delay), pace_(pace) {}
 
-  /// Nothing when no edge is near enough: such a frame is dropped and counted, never guessed.
+  [[nodiscard]] CameraPace pace() const RT_SAFE { return pace_; }
+
+  /// The trigger whose frames' leaders arrive nearest to @p arrival; nothing where that is half
+  /// a period away or more.
   [[nodiscard]] std::optional<std::uint64_t> triggerOf(rt::Timestamp arrival,
                                                        const EdgeBoard& edges) const RT_SAFE;
+
+  /// The trigger whose edge lies less than @p within from @p fired.
+  [[nodiscard]] static std::optional<std::uint64_t> edgeNear(rt::Timestamp fired,
+                                                             rt::Nanoseconds within,
+                                                             const EdgeBoard& edges) RT_SAFE;
+
+  /// Whether a leader of the edge @p edge can have been seen at @p arrival: not half a period
+  /// before it was due. However late is possible: machines are busy.
+  [[nodiscard]] bool canArrive(rt::Timestamp edge, rt::Timestamp arrival) const RT_SAFE {
+    return 2 * (edge + camera_delay_ - arrival) < period_;
+  }
 
  private:
   rt::Nanoseconds period_;
   rt::Nanoseconds camera_delay_;
+  CameraPace pace_;
 };
 
 }  // namespace appliance

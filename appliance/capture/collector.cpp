@@ -12,19 +12,39 @@ void count(std::atomic<std::uint64_t>& counter, std::uint64_t more = 1) RT_SAFE 
 
 }  // namespace
 
+/// The trigger under which to store the frame; 0 after counting why not.
 std::uint64_t Collector::triggerOf(const hal::FrameArrival& arrival) RT_SAFE {
-  if (arrival.status != hal::FrameStatus::kComplete) {
-    // The end of a stream cuts a frame short; that is nobody's loss.
-    if (arrival.status != hal::FrameStatus::kAborted) count(incomplete_);
+  switch (arrival.status) {
+    case hal::FrameStatus::kComplete:
+      break;
+    case hal::FrameStatus::kIncomplete:
+      count(incomplete_);
+      return 0;
+    case hal::FrameStatus::kWrongSize:
+      count(wrong_size_);
+      return 0;
+    case hal::FrameStatus::kAborted:  // the end of a stream cuts a frame short: nobody's loss
+      return 0;
+  }
+  const FrameName name = namer_.name({.arrival = arrival.first_packet,
+                                      .camera_clock = arrival.camera_clock,
+                                      .frame_id = arrival.frame_id},
+                                     board_.edges);
+  switch (name.why) {
+    case FrameName::Why::kNamed:
+      break;
+    case FrameName::Why::kNoEdge:
+      count(no_edge_);
+      return 0;
+    case FrameName::Why::kUnsettled:
+      count(unsettled_);
+      return 0;
+  }
+  if (name.trigger <= frames_.newest()) {
+    count(repeated_);
     return 0;
   }
-  const rt::Timestamp leader = arrivals_.arrival(arrival.first_packet, arrival.camera_clock);
-  const auto trigger = association_.triggerOf(leader, board_.edges);
-  if (!trigger || *trigger <= frames_.newest()) {
-    count(unattributed_);
-    return 0;
-  }
-  return *trigger;
+  return name.trigger;
 }
 
 std::uint32_t Collector::onFrame(const hal::FrameArrival& arrival) RT_SAFE {
@@ -62,11 +82,17 @@ std::uint32_t Collector::onFrame(const hal::FrameArrival& arrival) RT_SAFE {
 }
 
 CollectorCounts Collector::counts() const RT_SAFE {
-  return {.stored = stored_.load(std::memory_order_relaxed),
-          .missing = missing_.load(std::memory_order_relaxed),
-          .incomplete = incomplete_.load(std::memory_order_relaxed),
-          .unattributed = unattributed_.load(std::memory_order_relaxed),
-          .last_stored = rt::fromNs(last_stored_ns_.load(std::memory_order_relaxed))};
+  CollectorCounts counts{
+      .stored = stored_.load(std::memory_order_relaxed),
+      .missing = missing_.load(std::memory_order_relaxed),
+      .incomplete = incomplete_.load(std::memory_order_relaxed),
+      .wrong_size = wrong_size_.load(std::memory_order_relaxed),
+      .no_edge = no_edge_.load(std::memory_order_relaxed),
+      .repeated = repeated_.load(std::memory_order_relaxed),
+      .unsettled = unsettled_.load(std::memory_order_relaxed),
+      .last_stored = rt::fromNs(last_stored_ns_.load(std::memory_order_relaxed))};
+  counts.unattributed = counts.no_edge + counts.repeated + counts.unsettled;
+  return counts;
 }
 
 }  // namespace appliance

@@ -3,10 +3,10 @@
 #include <atomic>
 #include <cstdint>
 
-#include "appliance/capture/arrival_filter.h"
 #include "appliance/capture/association.h"
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
+#include "appliance/capture/frame_namer.h"
 #include "appliance/capture/frame_set.h"
 #include "appliance/capture/genlock_board.h"
 #include "appliance/trace/trace_writer.h"
@@ -26,13 +26,17 @@ struct CaptureBoard {
   rt::Doorbell frame_ready;                    ///< wakes the render thread
 };
 
-/// What one camera delivered so far. Every frame that came is in exactly one of
-/// stored, incomplete and unattributed.
+/// What one camera delivered so far. Every frame that came is in exactly one of stored,
+/// incomplete, wrong_size, no_edge, repeated and unsettled.
 struct CollectorCounts {
   std::uint64_t stored = 0;
   std::uint64_t missing = 0;     ///< triggers overtaken without a stored frame, whatever the reason
-  std::uint64_t incomplete = 0;  ///< packets missing after all resends, or a wrong size
-  std::uint64_t unattributed = 0;  ///< no trigger edge near enough, or a trigger that has its frame
+  std::uint64_t incomplete = 0;  ///< packets missing after all resends
+  std::uint64_t wrong_size = 0;  ///< another size or format than the profile says
+  std::uint64_t no_edge = 0;     ///< taken when no trigger asked for it
+  std::uint64_t repeated = 0;    ///< its trigger has a frame, or a later one has
+  std::uint64_t unsettled = 0;   ///< its trigger could not be told for sure; see FrameNamer
+  std::uint64_t unattributed = 0;  ///< the sum of the last three
   rt::Timestamp last_stored;
 };
 
@@ -45,13 +49,13 @@ class Collector final : public hal::FrameSink {
  public:
   Collector(std::uint32_t camera, Association association, CameraFrames& frames,
             CaptureBoard& board, TraceProducer* trace)
-      : camera_(camera), association_(association), frames_(frames), board_(board), trace_(trace) {}
+      : camera_(camera), namer_(association), frames_(frames), board_(board), trace_(trace) {}
 
   [[nodiscard]] std::uint32_t onFrame(const hal::FrameArrival& arrival) RT_SAFE override;
 
   /// A new stream begins: its camera may have been switched off, its clock set back.
   /// Threads  Whoever starts the camera, while it is stopped.
-  void restart() { arrivals_ = {}; }
+  void restart() { namer_.restart(); }
 
   [[nodiscard]] CollectorCounts counts() const RT_SAFE;
 
@@ -59,8 +63,7 @@ class Collector final : public hal::FrameSink {
   [[nodiscard]] std::uint64_t triggerOf(const hal::FrameArrival& arrival) RT_SAFE;
 
   const std::uint32_t camera_;
-  ArrivalFilter arrivals_;  // the receive thread's
-  const Association association_;
+  FrameNamer namer_;  // the receive thread's
   CameraFrames& frames_;
   CaptureBoard& board_;
   TraceProducer* trace_;  // none: not traced
@@ -69,7 +72,10 @@ class Collector final : public hal::FrameSink {
   std::atomic<std::uint64_t> stored_{0};
   std::atomic<std::uint64_t> missing_{0};
   std::atomic<std::uint64_t> incomplete_{0};
-  std::atomic<std::uint64_t> unattributed_{0};
+  std::atomic<std::uint64_t> wrong_size_{0};
+  std::atomic<std::uint64_t> no_edge_{0};
+  std::atomic<std::uint64_t> repeated_{0};
+  std::atomic<std::uint64_t> unsettled_{0};
   std::atomic<std::int64_t> last_stored_ns_{0};
 };
 
