@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/aravis/aravis_camera.h"
+#include "hal/aravis/camera_probe.h"
 #include "hal/emulated/trigger_line.h"
 #include "tests/support/child_process.h"
 
@@ -32,6 +33,7 @@ class CameraRig {
   virtual ~CameraRig() = default;
   virtual std::expected<std::unique_ptr<hal::Camera>, std::string> open(
       const hal::CameraProfile& profile) = 0;
+  virtual hal::CameraProbe probe() = 0;
   virtual std::string address() const = 0;
   virtual void fire() = 0;
 };
@@ -169,6 +171,26 @@ TEST_P(CameraConformance, DeliversNothingAfterStopAndStartsAgain) {
   EXPECT_EQ(second.arrivals().size(), 2U);
 }
 
+TEST_P(CameraConformance, TellsAProbeWhetherItIsFreeOrOurs) {
+  EXPECT_EQ(rig_->probe().answer, hal::CameraAnswer::kFree);
+  auto camera = opened();
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(rig_->probe().answer, hal::CameraAnswer::kOurs);
+  camera.reset();
+  EXPECT_EQ(rig_->probe().answer, hal::CameraAnswer::kFree);
+}
+
+TEST_P(CameraConformance, IsRefusedWhileSomebodyElseControlsIt) {
+  const auto camera = opened();
+  ASSERT_TRUE(camera);
+  const auto second = rig_->open(profile());
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error(), testing::HasSubstr("another program controls it"));
+  Recorder recorder;
+  ASSERT_TRUE(camera->start(recorder, slots_, first_slots_)) << "the first lost it by that";
+  fireAndWait(recorder, 2);
+}
+
 TEST_P(CameraConformance, NamesTheCameraAndTheAddressThatDoesNotAnswer) {
   hal::CameraProfile nobody = profile();
   nobody.address = "127.0.3.99";
@@ -204,6 +226,7 @@ class EmulatedGigE final : public CameraRig {
       const hal::CameraProfile& profile) override {
     return hal::aravis::openCamera(profile, {.name = "recv01"});
   }
+  hal::CameraProbe probe() override { return hal::aravis::probeCamera(address(), 10s); }
   std::string address() const override { return "127.0.3.1"; }
   void fire() override {
     ASSERT_TRUE(line_);

@@ -101,8 +101,14 @@ Status Camera::readRegisters(std::span<const std::uint8_t> addresses, bool may_r
                              gvcp::Answer& answer) const {
   for (std::size_t at = 0; at < addresses.size(); at += 4) {
     const std::uint32_t address = loadBe32(&addresses[at]);
-    if (address == reg::kControlPrivilege) {  // anybody may ask whether the camera is taken
+    // Anybody may ask whether the camera is taken, and by whom.
+    if (address == reg::kControlPrivilege) {
       answer.append32(control_.privilege());
+      continue;
+    }
+    if (address == reg::kControllerAddress || address == reg::kControllerPort) {
+      const auto controller = control_.controller().value_or(ControlChannel::Peer{});
+      answer.append32(address == reg::kControllerPort ? controller.port : controller.address);
       continue;
     }
     const Status status = may_read ? registers_.checkRead(address) : Status::kAccessDenied;

@@ -12,8 +12,8 @@ namespace emulator {
 class ControlChannel {
  public:
   struct Peer {
-    std::uint32_t address;
-    std::uint16_t port;
+    std::uint32_t address = 0;
+    std::uint16_t port = 0;
     friend bool operator==(const Peer&, const Peer&) = default;
   };
 
@@ -27,6 +27,7 @@ class ControlChannel {
     return controller_ && controller_->address == peer.address;
   }
   [[nodiscard]] bool isHeld() const { return controller_.has_value(); }
+  [[nodiscard]] const std::optional<Peer>& controller() const { return controller_; }
   /// What the control privilege register reads.
   [[nodiscard]] std::uint32_t privilege() const { return privilege_; }
 
