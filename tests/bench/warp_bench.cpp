@@ -1,6 +1,12 @@
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -8,18 +14,23 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "ui-kms/cpu_demosaic.h"
+#include "tests/bench/support/cpus.h"
+#include "tests/bench/support/google.h"
 #include "ui-kms/renderer.h"
-#include "ui-kms/warp_mesh.h"
 
-// One view of a 1280x1024 Bayer camera on the screen: the renderer, and what OpenCV needs for it.
-// LP_NUM_THREADS in the environment sets the renderer's threads; OpenCV's peers have all CPUs.
+// One view of a 1280x1024 Bayer camera on the screen: the product's renderer beside OpenCV, with as
+// many threads. A software renderer takes its number of threads once per process, so each number of
+// threads is a process.
 
 namespace {
 
 constexpr std::uint32_t kSourceWidthPx = 1280;
 constexpr std::uint32_t kSourceHeightPx = 1024;
+
+int opencv_threads = 1;  // of this process; set before the first benchmark
 
 struct Scene {
   Scene(int width_px, int height_px) : display(width_px, height_px), mosaic(kSourcePixels) {
@@ -40,111 +51,212 @@ struct Scene {
   hal::StatusLine status;
 };
 
-Scene sceneOf(const benchmark::State& state) {
-  return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1))};
+Scene& sceneOf(const benchmark::State& state) {
+  static std::map<std::int64_t, std::unique_ptr<Scene>> scenes;
+  auto& scene = scenes[state.range(0)];
+  if (!scene) {
+    scene =
+        std::make_unique<Scene>(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  }
+  return *scene;
 }
 
-void render(benchmark::State& state, ui::DemosaicSite site) {
-  const Scene scene = sceneOf(state);
-  ui::RendererConfig config;
-  config.width_px = static_cast<std::uint32_t>(scene.display.width);
-  config.height_px = static_cast<std::uint32_t>(scene.display.height);
-  config.source_width_px = kSourceWidthPx;
-  config.source_height_px = kSourceHeightPx;
-  config.demosaic = site;
-  const auto renderer = ui::Renderer::create(config);
-  if (!renderer) {
-    state.SkipWithError(renderer.error().c_str());
+/// A renderer with its picture; made once, because that compiles shaders.
+struct Screen {
+  std::unique_ptr<ui::Renderer> renderer;
+  std::optional<ui::RenderTarget> target;
+};
+
+Screen* screenOf(const benchmark::State& state, std::string& error) {
+  static std::map<std::int64_t, Screen> screens;
+  Screen& screen = screens[state.range(0)];
+  if (!screen.renderer) {
+    const ui::RendererConfig config{.width_px = static_cast<std::uint32_t>(state.range(0)),
+                                    .height_px = static_cast<std::uint32_t>(state.range(1)),
+                                    .source_width_px = kSourceWidthPx,
+                                    .source_height_px = kSourceHeightPx};
+    auto renderer = ui::Renderer::create(config);
+    if (!renderer) {
+      error = renderer.error();
+      return nullptr;
+    }
+    screen.renderer = std::move(*renderer);
+    screen.target = ui::makeRenderTarget(config.width_px, config.height_px);
+  }
+  if (!screen.renderer->context().bind()) {
+    error = "the context is not ours";
+    return nullptr;
+  }
+  return &screen;
+}
+
+/// From the mosaic in memory to the finished picture, status line included.
+void ours(benchmark::State& state) {
+  const Scene& scene = sceneOf(state);
+  std::string error;
+  Screen* screen = screenOf(state, error);
+  if (screen == nullptr) {
+    std::fprintf(stderr, "warp: %s\n", error.c_str());
+    state.SkipWithError("no renderer");
     return;
   }
-  const ui::RenderTarget target = ui::makeRenderTarget(config.width_px, config.height_px);
-  double upload_ms = 0;
-  double warp_ms = 0;
+  double warp_ns = 0;
   for (auto _ : state) {
-    const auto instants = (*renderer)->draw(target, &scene.plan, scene.status);
-    using Milliseconds = std::chrono::duration<double, std::milli>;
-    upload_ms += Milliseconds(instants.upload_end - instants.warp_submit).count();
-    warp_ms += Milliseconds(instants.warp_end - instants.upload_end).count();
+    const auto instants = screen->renderer->draw(*screen->target, &scene.plan, scene.status);
+    warp_ns +=
+        std::chrono::duration<double, std::nano>(instants.warp_end - instants.upload_end).count();
   }
-  state.counters["demosaic_upload_ms"] =
-      benchmark::Counter(upload_ms, benchmark::Counter::kAvgIterations);
-  state.counters["warp_ms"] = benchmark::Counter(warp_ms, benchmark::Counter::kAvgIterations);
-  state.SetLabel((*renderer)->context().renderer());
+  state.counters["warp"] = benchmark::Counter(warp_ns, benchmark::Counter::kAvgIterations);
+  state.counters["gpu"] = screen->renderer->context().software() ? 0 : 1;
 }
 
-void renderCpuDemosaic(benchmark::State& state) {
-  render(state, ui::DemosaicSite::kCpu);
-}
-void renderShaderDemosaic(benchmark::State& state) {
-  render(state, ui::DemosaicSite::kGpu);
-}
+/// What OpenCV works on; the demosaicing is its own, as it is ours on a software renderer.
+struct OpenCvWarp {
+  explicit OpenCvWarp(const Scene& scene)
+      : mosaic(kSourceHeightPx, kSourceWidthPx, CV_8UC1,
+               const_cast<std::byte*>(scene.mosaic.data())),
+        to_camera(scene.plan.H_camera_display.data()),
+        camera(scene.plan.lens.fx_px, 0, scene.plan.lens.cx_px, 0, scene.plan.lens.fy_px,
+               scene.plan.lens.cy_px, 0, 0, 1),
+        distortion(scene.plan.lens.distortion, /*copyData=*/true),
+        display(scene.display) {
+    cv::setNumThreads(opencv_threads);
+    demosaic();
+  }
+  void demosaic() { cv::cvtColor(mosaic, rgb, cv::COLOR_BayerBG2RGB); }
 
-void demosaic(benchmark::State& state) {
-  const Scene scene = sceneOf(state);
-  std::vector<std::byte> rgba(Scene::kSourcePixels * 4);
-  for (auto _ : state) ui::demosaicOnCpu(scene.plan.source, rgba);
-}
+  /// Undistorted, by maps that are made anew for each picture: each has its own homography.
+  void remap() {
+    // Its new camera matrix times rotation, inverted, is the way from display to ray.
+    cv::initUndistortRectifyMap(camera, distortion, cv::noArray(), to_camera.inv() * camera,
+                                display, CV_16SC2, map, weights);
+    cv::remap(rgb, out, map, weights, cv::INTER_LINEAR);
+  }
+  /// Without undistortion.
+  void warpPerspective() {
+    cv::warpPerspective(rgb, out, to_camera, display, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP);
+  }
 
-void warpMesh(benchmark::State& state) {
-  const Scene scene = sceneOf(state);
-  ui::WarpMesh mesh(static_cast<std::uint32_t>(scene.display.width),
-                    static_cast<std::uint32_t>(scene.display.height));
-  for (auto _ : state) mesh.update(scene.plan);
-}
-
-/// Undistorted by maps that are made anew for each picture, because each has its own homography.
-void openCvRemap(benchmark::State& state) {
-  cv::setNumThreads(cv::getNumberOfCPUs());
-  const Scene scene = sceneOf(state);
-  const auto& lens = scene.plan.lens;
-  const cv::Mat mosaic(kSourceHeightPx, kSourceWidthPx, CV_8UC1,
-                       const_cast<std::byte*>(scene.mosaic.data()));
-  const cv::Matx33d camera(lens.fx_px, 0, lens.cx_px, 0, lens.fy_px, lens.cy_px, 0, 0, 1);
-  const cv::Matx33d to_camera(scene.plan.H_camera_display.data());
-  const cv::Mat distortion(lens.distortion, /*copyData=*/true);
+  cv::Mat mosaic;
+  cv::Matx33d to_camera;
+  cv::Matx33d camera;
+  cv::Mat distortion;
+  cv::Size display;
   cv::Mat rgb;
   cv::Mat map;
   cv::Mat weights;
   cv::Mat out;
+};
+
+void demosaicAndRemap(benchmark::State& state) {
+  OpenCvWarp warp(sceneOf(state));
   for (auto _ : state) {
-    cv::cvtColor(mosaic, rgb, cv::COLOR_BayerBG2RGB);
-    // Its new camera matrix times rotation, inverted, is the way from display to ray.
-    cv::initUndistortRectifyMap(camera, distortion, cv::noArray(), to_camera.inv() * camera,
-                                scene.display, CV_16SC2, map, weights);
-    cv::remap(rgb, out, map, weights, cv::INTER_LINEAR);
-    benchmark::DoNotOptimize(out.data);
+    warp.demosaic();
+    warp.remap();
+    benchmark::DoNotOptimize(warp.out.data);
   }
 }
 
-/// Without undistortion.
-void openCvWarpPerspective(benchmark::State& state) {
-  cv::setNumThreads(cv::getNumberOfCPUs());
-  const Scene scene = sceneOf(state);
-  const cv::Mat mosaic(kSourceHeightPx, kSourceWidthPx, CV_8UC1,
-                       const_cast<std::byte*>(scene.mosaic.data()));
-  const cv::Matx33d to_camera(scene.plan.H_camera_display.data());
-  cv::Mat rgb;
-  cv::Mat out;
+void remap(benchmark::State& state) {
+  OpenCvWarp warp(sceneOf(state));
   for (auto _ : state) {
-    cv::cvtColor(mosaic, rgb, cv::COLOR_BayerBG2RGB);
-    cv::warpPerspective(rgb, out, to_camera, scene.display,
-                        cv::INTER_LINEAR | cv::WARP_INVERSE_MAP);
-    benchmark::DoNotOptimize(out.data);
+    warp.remap();
+    benchmark::DoNotOptimize(warp.out.data);
+  }
+}
+
+void demosaicAndWarpPerspective(benchmark::State& state) {
+  OpenCvWarp warp(sceneOf(state));
+  for (auto _ : state) {
+    warp.demosaic();
+    warp.warpPerspective();
+    benchmark::DoNotOptimize(warp.out.data);
   }
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
-  bench->ArgNames({"width", "height"})->Args({1280, 720})->Args({1920, 1080});
-  bench->Unit(benchmark::kMillisecond)->UseRealTime();
+  bench->Args({1280, 720})->Args({1920, 1080})->UseRealTime();
+}
+BENCHMARK(ours)->Apply(sizes);
+BENCHMARK(demosaicAndRemap)->Apply(sizes);
+BENCHMARK(remap)->Apply(sizes);
+BENCHMARK(demosaicAndWarpPerspective)->Apply(sizes);
+
+std::vector<bench::Comparison> compare(const bench::Repetitions& results, unsigned threads,
+                                       bool all_cpus) {
+  using Kind = bench::Bar::Kind;
+  constexpr double kMillisecond = 1e6;
+  const std::string with = ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  const auto samples = [&](const std::string& name, const char* as) {
+    return results.samples(name, as, kMillisecond);
+  };
+  const auto on_gpu = results.samples("ours/1280/720:gpu", "").values;
+  const bool gpu = !on_gpu.empty() && on_gpu.front() != 0;
+  // The processor is what a GPU must beat with all it has; beside one thread it says nothing.
+  const bench::Bar bar =
+      gpu ? bench::Bar{Kind::kRatioAtLeast, 3} : bench::Bar{Kind::kRatioAtMost, 2};
+  const std::string not_judged = gpu && !all_cpus ? "one thread only" : "";
+  std::vector<bench::Comparison> out;
+  for (const char* size : {"1280/720", "1920/1080"}) {
+    const std::string at = std::string("/") + size;
+    const std::string rows = std::string(size).substr(std::string(size).find('/') + 1) + "p";
+    out.push_back({.what = rows + with + ", from the mosaic",
+                   .unit = "ms",
+                   .ours = samples("ours" + at, gpu ? "EGL on a GPU" : "EGL on llvmpipe"),
+                   .rival = samples("demosaicAndRemap" + at, "cvtColor, maps, remap"),
+                   .as_speed = gpu,
+                   .bar = bar,
+                   .not_judged = not_judged});
+    out.push_back({.what = rows + with + ", the warp alone",
+                   .unit = "ms",
+                   .ours = samples("ours" + at + ":warp", "mesh, warp, sRGB, text"),
+                   .rival = samples("remap" + at, "maps, remap"),
+                   .as_speed = gpu,
+                   .bar = bar,
+                   .not_judged = not_judged});
+    out.push_back(
+        {.what = rows + with + ", undistorted or not",
+         .unit = "ms",
+         .ours = samples("ours" + at, "ours, undistorts"),
+         .rival = samples("demosaicAndWarpPerspective" + at, "warpPerspective, does not")});
+  }
+  if (!gpu && all_cpus) {
+    out.push_back({.what = "EGL on a GPU, all CPUs",
+                   .unit = "ms",
+                   .ours = {"EGL on a GPU", {}},
+                   .bar = bench::Bar{Kind::kRatioAtLeast, 3},
+                   .not_judged = "no GPU here"});
+  }
+  return out;
 }
 
-BENCHMARK(renderCpuDemosaic)->Apply(sizes);
-BENCHMARK(renderShaderDemosaic)->Apply(sizes);
-BENCHMARK(demosaic)->Apply(sizes);
-BENCHMARK(warpMesh)->Apply(sizes);
-BENCHMARK(openCvRemap)->Apply(sizes);
-BENCHMARK(openCvWarpPerspective)->Apply(sizes);
+int runWith(unsigned threads, bool all_cpus, const std::vector<std::string>& arguments,
+            const bench::Options& options) {
+  setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), /*overwrite=*/1);
+  opencv_threads = static_cast<int>(threads);
+  bench::Repetitions results;
+  if (!bench::runGoogleBenchmarks(arguments, options, results)) return 2;
+  return bench::report("warp", compare(results, threads, all_cpus), options) ? 0 : 1;
+}
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  std::vector<std::string> arguments(argv, argv + argc);
+  const bench::Options options = bench::takeOptions(arguments);
+  const auto cpus = static_cast<unsigned>(bench::allowedCpus().size());
+  std::vector<unsigned> thread_counts{1};
+  if (cpus > 1) thread_counts.push_back(cpus);
+  for (const unsigned threads : thread_counts) {
+    std::fflush(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+      const int code = runWith(threads, threads == thread_counts.back(), arguments, options);
+      std::fflush(nullptr);
+      _exit(code);  // the driver's threads end with the process
+    }
+    int status = 0;
+    if (child < 0 || waitpid(child, &status, 0) != child || status != 0) return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "appliance/capture/edge_board.h"
+#include "appliance/capture/trigger_loop.h"
+#include "hal/backends.h"
+#include "hal/emulated/trigger_line.h"
+#include "tests/bench/reception/round.h"
+#include "tests/bench/support/comparison.h"
+
+// What lost packets cost: twenty cameras at 40 Hz, first on a whole network, then on one that loses
+// 1 % of all stream packets, resent ones too. How many frames stay incomplete, and how much later
+// the others are complete.
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kCameras = 20;
+constexpr double kRate_hz = 40;
+constexpr std::uint16_t kFaultPort = 3991;
+
+/// Says @p command to the emulator and waits for its "ok".
+bool command(const std::string& address, const std::string& command) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(kFaultPort);
+  inet_pton(AF_INET, address.c_str(), &to.sin_addr);
+  const auto* native = reinterpret_cast<const sockaddr*>(&to);
+  bool ok = sendto(fd, command.data(), command.size(), 0, native, sizeof to) > 0;
+  pollfd answer{.fd = fd, .events = POLLIN, .revents = 0};
+  std::array<char, 8> text{};
+  ok = ok && poll(&answer, 1, 5000) == 1 && recv(fd, text.data(), 2, 0) == 2;
+  close(fd);
+  return ok && std::string(text.data()) == "ok";
+}
+
+/// Notes of every frame whether it came whole and how long after its trigger.
+class Recorder final : public hal::FrameSink {
+ public:
+  Recorder(const appliance::EdgeBoard& edges, std::uint32_t first_free, std::uint32_t slots,
+           std::size_t frames)
+      : edges_(edges) {
+    for (std::uint32_t slot = first_free; slot < slots; ++slot) free_.push_back(slot);
+    delays_ms_.reserve(frames);
+  }
+
+  std::uint32_t onFrame(const hal::FrameArrival& arrival) noexcept override {
+    std::uint64_t trigger = edges_.newest();
+    while (trigger > 1 && edges_.edge(trigger) > arrival.first_packet) --trigger;
+    const std::scoped_lock lock(mutex_);
+    if (counting_ && arrival.status != hal::FrameStatus::kAborted) {
+      const std::chrono::duration<double, std::milli> delay =
+          arrival.last_packet - edges_.edge(trigger);
+      if (arrival.status == hal::FrameStatus::kComplete)
+        delays_ms_.push_back(delay.count());
+      else
+        ++incomplete_;
+    }
+    free_.push_back(arrival.slot);
+    const std::uint32_t next = free_.front();
+    free_.erase(free_.begin());
+    return next;
+  }
+
+  void count(bool on) {
+    const std::scoped_lock lock(mutex_);
+    counting_ = on;
+  }
+  [[nodiscard]] const std::vector<double>& delays_ms() const { return delays_ms_; }
+  [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
+
+ private:
+  const appliance::EdgeBoard& edges_;
+  std::mutex mutex_;
+  bool counting_ = false;
+  std::vector<std::uint32_t> free_;
+  std::vector<double> delays_ms_;  // complete frames
+  std::uint64_t incomplete_ = 0;
+};
+
+struct LossRound {
+  std::vector<double> delays_ms;
+  double incomplete = 0;
+  double missing = 0;  ///< no packet of them came
+};
+
+std::expected<LossRound, std::string> runLossRound(const bench::ReceptionSetup& setup,
+                                                   std::chrono::milliseconds length) {
+  auto board = std::make_unique<appliance::CaptureBoard>(kCameras);
+  auto line = hal::emulated::EmulatedTriggerLine::open(bench::EmulatedRig::kWirePort);
+  if (!line) return std::unexpected(line.error());
+  const std::uint32_t in_flight = bench::ReceptionSetup::kInFlight;
+  const std::uint32_t slots = in_flight + 2;
+  std::vector<std::byte> memory(setup.frameBytes() * slots * kCameras);
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t slot = 0; slot < in_flight; ++slot) first.push_back(slot);
+  const auto expected = static_cast<std::size_t>(length / setup.period) + 100;
+
+  std::vector<std::unique_ptr<Recorder>> recorders;
+  std::vector<std::unique_ptr<hal::Camera>> cameras;
+  for (std::uint32_t i = 0; i < kCameras; ++i) {
+    std::vector<std::span<std::byte>> spans;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      spans.push_back(
+          std::span(memory).subspan(setup.frameBytes() * (i * slots + slot), setup.frameBytes()));
+    }
+    auto camera = hal::openCamera("aravis", setup.cameras[i], setup.receive);
+    if (!camera) return std::unexpected(camera.error());
+    recorders.push_back(std::make_unique<Recorder>(board->edges, in_flight, slots, expected));
+    cameras.push_back(std::move(*camera));
+    if (auto started = cameras.back()->start(*recorders.back(), spans, first); !started) {
+      return std::unexpected(started.error());
+    }
+  }
+  appliance::TriggerLoop loop({.period = setup.period, .pulse_width = 100us}, **line, board->edges,
+                              board->genlock, /*trace=*/nullptr);
+  auto trigger =
+      rt::Thread::start({.name = "trigger", .policy = rt::SchedPolicy::kFifo, .priority = 80},
+                        [&loop](const std::stop_token& stop) { loop.run(stop); });
+  if (!trigger) return std::unexpected("the trigger thread does not start");
+  std::this_thread::sleep_for(20 * setup.period);
+  const std::uint64_t begin = board->edges.newest();
+  for (const auto& recorder : recorders) recorder->count(true);
+  std::this_thread::sleep_for(length);
+  trigger->requestStop();
+  trigger->join();
+  const std::uint64_t end = board->edges.newest();
+  std::this_thread::sleep_for(4 * setup.period);  // frames on the wire belong to this round
+  for (const auto& camera : cameras) camera->stop();
+
+  LossRound round;
+  for (const auto& recorder : recorders) {
+    round.delays_ms.insert(round.delays_ms.end(), recorder->delays_ms().begin(),
+                           recorder->delays_ms().end());
+    round.incomplete += static_cast<double>(recorder->incomplete());
+  }
+  // Frames of the trigger before the first one counted may count or not.
+  const double frames = static_cast<double>(round.delays_ms.size()) + round.incomplete;
+  round.missing = std::max(0.0, static_cast<double>((end - begin) * kCameras) - frames);
+  return round;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> arguments(argv, argv + argc);
+  const bench::Options options = bench::takeOptions(arguments);
+  if (arguments.size() > 1) {
+    std::fputs("usage: loss_bench [--quick] [--rows FILE]\n", stderr);
+    return 2;
+  }
+  const auto length = options.quick ? 2000ms : 60'000ms;
+  const bench::EmulatedRig rig(kCameras, options.quick ? 320 : 1280, options.quick ? 256 : 1024);
+  if (!rig.ready()) {
+    std::fprintf(stderr, "loss: %s\n", rig.error().c_str());
+    return 1;
+  }
+  bench::ReceptionSetup setup = rig.setup(kCameras, kRate_hz);
+  for (auto& camera : setup.cameras) camera.packet_delay_ns = 3803;  // two 10 Gb/s uplinks
+
+  const auto fail = [](const std::string& why) {
+    std::fprintf(stderr, "loss: %s\n", why.c_str());
+    return 1;
+  };
+  const auto whole = runLossRound(setup, length);
+  if (!whole) return fail(whole.error());
+  if (!command(setup.cameras[0].address, "all loss 1")) return fail("no answer to \"all loss 1\"");
+  const auto lossy = runLossRound(setup, length);
+  if (!lossy) return fail(lossy.error());
+
+  const double later_ms =
+      bench::figuresOf(lossy->delays_ms).p99 - bench::figuresOf(whole->delays_ms).p99;
+  const std::string not_judged = options.quick ? "a quick run" : "";
+  const bool written = bench::report(
+      "loss",
+      {{.what = "frames not whole, 1 % loss",
+        .unit = "",
+        .ours = {.name = "kagami", .values = {lossy->incomplete + lossy->missing}},
+        .rival = {.name = "without loss", .values = {whole->incomplete + whole->missing}},
+        .bar = bench::Bar{bench::Bar::Kind::kOursAtMost, 0},
+        .not_judged = not_judged},
+       {.what = "trigger to last packet, 1 % loss",
+        .unit = "ms",
+        .ours = {.name = "kagami", .values = lossy->delays_ms},
+        .rival = {.name = "without loss", .values = whole->delays_ms},
+        .statistic = bench::Statistic::kP99},
+       {.what = "its p99 later than without loss",
+        .unit = "ms",
+        .ours = {.name = "kagami", .values = {later_ms}},
+        .bar = bench::Bar{bench::Bar::Kind::kOursAtMost, 25},
+        .not_judged = not_judged}},
+      options);
+  return written ? 0 : 1;
+}
