@@ -13,7 +13,7 @@ set xrange [0:*]
 line(x) = offset + slope * x
 fit line(x) data index 0 using 1:2 via offset, slope
 plot data index 0 using 1:2 with points pt 7 ps 1.3 lc rgb "#c03028" title "kagami", \
-     line(x) with lines lc rgb "#c03028" title sprintf("kagami: %.1f + %.2f ms per camera", offset * 1e3, slope * 1e3), \
+     line(x) with lines lc rgb "#c03028" title sprintf("kagami: %.1f ms + %.2f ms per camera", offset * 1e3, slope * 1e3), \
      data index 1 using 1:2 with points pt 6 ps 1.3 lc rgb "#404040" title "minimal Aravis client"
 
 set output folder."/growth_history.png"

@@ -194,7 +194,6 @@ int main(int argc, char** argv) {
       {.what = range + ", linear fit",
        .unit = "R^2",
        .ours = {"kagami", {ours.r2}},
-       .rival = {"minimal Aravis client", {rival.r2}},
        .bar = bench::Bar{Kind::kOursAtLeast, 0.98},
        .not_judged = complete ? "" : "frames lost"},
       {.what = "one more camera",
