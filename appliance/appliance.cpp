@@ -49,11 +49,11 @@ Appliance::Appliance(const Config& config, const Rig& rig)
       target_({target_m_[0], target_m_[1], target_m_[2]}),
       board_(static_cast<std::uint32_t>(rig.cameras.size())) {}
 
-std::expected<std::unique_ptr<Appliance>, std::string> Appliance::start(const Config& config,
-                                                                        const Rig& rig,
-                                                                        hal::Display& display,
-                                                                        PictureObserver* observer) {
+std::expected<std::unique_ptr<Appliance>, std::string> Appliance::start(
+    const Config& config, const Rig& rig, hal::Display& display, PictureObserver* observer,
+    std::vector<std::string> degraded) {
   std::unique_ptr<Appliance> appliance(new Appliance(config, rig));
+  appliance->degraded_ = std::move(degraded);
   auto done = appliance->makeHistory(display);
   if (done) done = appliance->openDevices();
   if (done) done = appliance->openTrace();
@@ -183,7 +183,8 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
                        .zoom = config_.display.zoom,
                        .pixel_format = config_.cameras.pixel_format,
                        .director = {.sweep_views_per_second = config_.director.sweep_views_per_s,
-                                    .delay_ladder = delayLadder(config_.director)}});
+                                    .delay_ladder = delayLadder(config_.director)},
+                       .flicker_compensation = config_.display.flicker_compensation});
 }
 
 std::expected<void, std::string> Appliance::startThreads(const hal::Display& display) {
@@ -222,16 +223,21 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
 void Appliance::makeSupervisors() {
   for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
     const std::string& backend = config_.cameras.backend;
-    const hal::CameraProfile profile = profileOf(config_.cameras, rig_.cameras[i], i);
-    CameraDoor door{.probe =
-                        [backend, address = profile.address](rt::Nanoseconds timeout) {
-                          return hal::probeCamera(backend, address, timeout);
-                        },
-                    .open =
-                        [backend, profile,
-                         receive = threadConfig(receiveThreadName(i), config_.realtime.receive)] {
-                          return hal::openCamera(backend, profile, receive);
-                        }};
+    const hal::CameraProfile profile = profileOf(config_, rig_.cameras[i], i);
+    CameraDoor door{
+        .probe =
+            [backend, address = profile.address](rt::Nanoseconds timeout) {
+              return hal::probeCamera(backend, address, timeout);
+            },
+        .open =
+            [backend, profile,
+             receive = threadConfig(receiveThreadName(i), config_.realtime.receive)] {
+              return hal::openCamera(backend, profile, receive);
+            },
+        .name = profile.name,
+        .frame_packets = frameOnWire(std::uint64_t{profile.width_px} * profile.height_px,
+                                     profile.packet_size_bytes)
+                             .packets};
     supervisors_.push_back(std::make_unique<CameraSupervisor>(std::move(door), *collectors_[i],
                                                               history_->camera(i), board_.edges));
   }
@@ -335,7 +341,11 @@ Status Appliance::status() const {
   if (panel_loop_ && panel_loop_->lost()) {
     status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");
   }
+  for (const auto& supervisor : supervisors_) {
+    for (std::string& remark : supervisor->remarks()) status.degraded.push_back(std::move(remark));
+  }
   status.genlock_text = genlockText(status.genlock, config_.trigger.rate_hz);
+  if (config_.display.flicker_compensation) status.light_text = flickerText(render.flicker);
   status.cameras = cameraStatuses();
   for (const CameraStatus& camera : status.cameras) {
     status.frames_lost += camera.frames_lost;

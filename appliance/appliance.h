@@ -40,9 +40,11 @@ namespace appliance {
 /// Errors   start(): one line for a person; nothing is left running.
 class Appliance final : public ControlSink, public StatusSource {
  public:
-  /// @p display and @p observer outlive the appliance.
+  /// @p display and @p observer outlive the appliance. @p degraded: what is known already not to
+  /// be as asked.
   [[nodiscard]] static std::expected<std::unique_ptr<Appliance>, std::string> start(
-      const Config& config, const Rig& rig, hal::Display& display, PictureObserver* observer);
+      const Config& config, const Rig& rig, hal::Display& display, PictureObserver* observer,
+      std::vector<std::string> degraded);
 
   ~Appliance() override;
   Appliance(const Appliance&) = delete;

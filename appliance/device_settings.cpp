@@ -25,10 +25,25 @@ double triggerDelay_us(const Config::Cameras& config, std::size_t camera) {
   return config.opto_delay_us.empty() ? 0 : commonDelay_us(config) - config.opto_delay_us[camera];
 }
 
+/// The longest that an incomplete frame may be waited for without holding up the next one.
+constexpr double kRetentionShare = 0.8;
+constexpr double kLongestRetention_us = 100'000;
+
+hal::ResendPolicy policyOf(hal::ResendPolicy policy, double rate_hz) {
+  if (policy.frame_retention_us == 0) {
+    policy.frame_retention_us =
+        static_cast<std::uint32_t>(std::min(kRetentionShare * 1e6 / rate_hz, kLongestRetention_us));
+  }
+  return policy;
+}
+
 }  // namespace
 
-hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& camera,
-                             std::size_t index) {
+hal::CameraProfile profileOf(const Config& site, const RigCamera& camera, std::size_t index) {
+  const Config::Cameras& config = site.cameras;
+  std::vector<hal::ModelResendPolicy> by_model = site.resend.models;
+  for (hal::ModelResendPolicy& own : by_model)
+    own.policy = policyOf(own.policy, site.trigger.rate_hz);
   return {.name = camera.name,
           .address = config.addresses[index],
           .width_px = camera.width_px,
@@ -40,10 +55,11 @@ hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& cam
           .trigger_source = config.trigger_source,
           .trigger_delay_us = triggerDelay_us(config, index),
           .packet_size_bytes = config.packet_size_bytes,
-          .packet_delay_ns = config.packet_delay_ns,
+          .packet_delay_ns = static_cast<std::uint32_t>(std::max(0, config.packet_delay_ns)),
           .socket_buffer_bytes = config.socket_buffer_bytes,
-          .packet_timeout_us = config.packet_timeout_us,
-          .frame_retention_us = config.frame_retention_us};
+          .resend = policyOf(site.resend.policy, site.trigger.rate_hz),
+          .resend_by_model = std::move(by_model),
+          .link_mbps = 1000 * site.network.camera_link_gbps};
 }
 
 std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {

@@ -19,8 +19,9 @@ namespace appliance {
 /// From the edge on the wire to the exposure, in every camera: the slowest opto-isolator's.
 [[nodiscard]] double commonDelay_us(const Config::Cameras& config);
 
-/// What camera @p index of the rig is told.
-[[nodiscard]] hal::CameraProfile profileOf(const Config::Cameras& config, const RigCamera& camera,
+/// What camera @p index of the rig is told. A resend.frame_retention_us of 0 becomes four fifths
+/// of the trigger's period; a packet delay below 0, not planned yet, becomes none.
+[[nodiscard]] hal::CameraProfile profileOf(const Config& site, const RigCamera& camera,
                                            std::size_t index);
 
 [[nodiscard]] std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config);

@@ -20,7 +20,9 @@
 #include "appliance/degraded_watch.h"
 #include "appliance/genlock_watch.h"
 #include "appliance/geometry/rig_file.h"
+#include "appliance/light/site_light.h"
 #include "appliance/log.h"
+#include "appliance/network/site_plan.h"
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
 #include "appliance/stop_signals.h"
@@ -45,6 +47,7 @@ struct Options {
 struct Site {
   Config config;
   Rig rig;
+  std::vector<std::string> degraded;  // what is known already not to be as asked
 };
 
 std::expected<Site, std::string> loadSite(const Options& options) {
@@ -56,7 +59,11 @@ std::expected<Site, std::string> loadSite(const Options& options) {
     rig->target_m = {options.target_m[0], options.target_m[1], options.target_m[2]};
   }
   if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
-  return Site{std::move(*config), std::move(*rig)};
+  auto fitted = fitToNetwork(std::move(*config), *rig);
+  if (!fitted) return std::unexpected(fitted.error());
+  Site site{std::move(fitted->config), std::move(*rig), {}};
+  if (!fitted->lowered.empty()) site.degraded.push_back(std::move(fitted->lowered));
+  return site;
 }
 
 struct Screen {
@@ -201,9 +208,9 @@ std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
     if (config.realtime.require) return std::unexpected(refused);
     logWarning(refused);
   }
-  auto running = Appliance::start(config, site.rig, display, recorder.get());
+  auto running = Appliance::start(config, site.rig, display, recorder.get(), site.degraded);
   if (!running) return std::unexpected(running.error());
-  logInfo(motionBlurLine(config, site.rig));
+  for (const std::string& line : lightLines(lightWish(config, site.rig))) logInfo(line);
   for (const std::string& line : (*running)->status().degraded) logWarning(line);
   logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
           std::string(display.renderer()) + ", frames by " + (*running)->status().source_path);
@@ -244,6 +251,7 @@ int main(int argc, char** argv) {
     return EXIT_FAILURE;
   }
   if (options.check_config) {
+    for (const std::string& line : site->degraded) logWarning(line);
     std::printf("%s: good; %s: %zu cameras\n", options.config_file.c_str(),
                 site->config.rig.file.c_str(), site->rig.cameras.size());
     return EXIT_SUCCESS;

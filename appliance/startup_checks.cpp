@@ -3,12 +3,6 @@
 #include <cstdio>
 
 namespace appliance {
-namespace {
-
-constexpr double kFastestLimb_m_s = 20;  // a thrower's hand
-
-}  // namespace
-
 std::expected<void, std::string> checkTogether(const Config& config, const Rig& rig) {
   const std::size_t addresses = config.cameras.addresses.size();
   if (addresses != rig.cameras.size()) {
@@ -39,16 +33,6 @@ std::expected<void, std::string> checkTogether(const Config& config, const Rig& 
         "trigger.pulse_width_us is more than half a trigger period: lower it, or trigger.rate_hz");
   }
   return {};
-}
-
-std::string motionBlurLine(const Config& config, const Rig& rig) {
-  const double blur_m = kFastestLimb_m_s * config.cameras.exposure_us * 1e-6;
-  const double px_per_m = rig.reference_focal_px / rig.reference_distance_m;
-  char line[128];
-  std::snprintf(line, sizeof line, "exposure %.2f ms: motion blur at %.0f m/s is %.0f mm (%.1f px)",
-                config.cameras.exposure_us * 1e-3, kFastestLimb_m_s, blur_m * 1e3,
-                blur_m * px_per_m);
-  return line;
 }
 
 }  // namespace appliance

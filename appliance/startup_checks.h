@@ -12,8 +12,4 @@ namespace appliance {
 /// Errors   One line: what does not fit, and where to change it.
 [[nodiscard]] std::expected<void, std::string> checkTogether(const Config& config, const Rig& rig);
 
-/// How far the athlete smears across a picture during one exposure, for the log:
-/// "exposure 1.00 ms: motion blur at 20 m/s is 20 mm (5.9 px)".
-[[nodiscard]] std::string motionBlurLine(const Config& config, const Rig& rig);
-
 }  // namespace appliance

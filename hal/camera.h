@@ -5,6 +5,7 @@
 #include <expected>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "rt/annotations.h"
 #include "rt/clock.h"
@@ -70,6 +71,9 @@ class Camera {
   virtual void stop() = 0;
 
   [[nodiscard]] virtual CameraStatistics statistics() const = 0;
+
+  /// What opening found that is not as the profile asks, although the camera works: one line each.
+  [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 }  // namespace hal

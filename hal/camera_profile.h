@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/camera.h"
+#include "hal/resend_policy.h"
 
 namespace hal {
 
@@ -32,8 +34,9 @@ struct CameraProfile {
   std::uint32_t packet_size_bytes = 9000;  ///< IP datagram; explicit, never negotiated
   std::uint32_t packet_delay_ns = 0;       ///< between two packets, beyond the link's own pace
   std::uint32_t socket_buffer_bytes = 4U << 20;
-  std::uint32_t packet_timeout_us = 5000;    ///< a packet this late is asked for again
-  std::uint32_t frame_retention_us = 30000;  ///< an incomplete frame blocks later ones this long
+  ResendPolicy resend;
+  std::vector<ModelResendPolicy> resend_by_model;  ///< for the models that need another one
+  double link_mbps = 0;  ///< what the plan counts on; a slower link is told. 0: any
 };
 
 /// GenICam's name of the format.

@@ -54,6 +54,20 @@ CameraHealth CameraSupervisor::health() const {
   return health_;
 }
 
+std::vector<std::string> CameraSupervisor::remarks() const {
+  const std::scoped_lock lock(mutex_);
+  return remarks_;
+}
+
+std::vector<std::string> CameraSupervisor::remarksNow() {
+  if (!camera_) return {};
+  std::vector<std::string> remarks = camera_->remarks();
+  if (large_packets_.vanish(camera_->statistics())) {
+    remarks.push_back(door_.name + ": " + LargePacketWatch::kReason);
+  }
+  return remarks;
+}
+
 std::optional<rt::Nanoseconds> CameraSupervisor::silentFor(rt::Timestamp now) const {
   const rt::Timestamp last = collector_.counts().last_stored;
   if (last == rt::Timestamp{}) return std::nullopt;
@@ -64,8 +78,10 @@ void CameraSupervisor::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const CameraAction action = machine_.step(rt::now(), facts());
     carryOut(action);
+    std::vector<std::string> remarks = remarksNow();
     std::unique_lock lock(mutex_);
     health_ = machine_.health();
+    if (camera_) remarks_ = std::move(remarks);  // what a lost camera had stays, it may be why
     settled_ = machine_.settled();
     changed_.notify_all();
     if (action != CameraAction::kNone) continue;

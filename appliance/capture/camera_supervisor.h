@@ -9,12 +9,14 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "appliance/capture/camera_machine.h"
 #include "appliance/capture/camera_state.h"
 #include "appliance/capture/collector.h"
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
+#include "appliance/network/large_packets.h"
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "rt/thread.h"
@@ -27,6 +29,8 @@ struct CameraDoor {
   std::function<hal::CameraProbe(rt::Nanoseconds)> probe;
   /// May take seconds where the camera dies meanwhile.
   std::function<std::expected<std::unique_ptr<hal::Camera>, std::string>()> open;
+  std::string name;                 ///< for remarks
+  std::uint32_t frame_packets = 0;  ///< on the wire, leader and trailer included
 };
 
 /// Keeps one camera of the rig streaming, however often it dies: carries out what its
@@ -42,7 +46,11 @@ class CameraSupervisor {
  public:
   CameraSupervisor(CameraDoor door, Collector& collector, CameraFrames& frames,
                    const EdgeBoard& edges)
-      : door_(std::move(door)), collector_(collector), frames_(frames), edges_(edges) {}
+      : door_(std::move(door)),
+        collector_(collector),
+        frames_(frames),
+        edges_(edges),
+        large_packets_(door_.frame_packets) {}
   ~CameraSupervisor() { stop(); }
   CameraSupervisor(const CameraSupervisor&) = delete;
   CameraSupervisor& operator=(const CameraSupervisor&) = delete;
@@ -59,12 +67,15 @@ class CameraSupervisor {
   void stop();
 
   [[nodiscard]] CameraHealth health() const;
+  /// What is not as it should be although it streams, or would: one line each. Any thread.
+  [[nodiscard]] std::vector<std::string> remarks() const;
   /// Since its last stored frame; nothing before the first.
   [[nodiscard]] std::optional<rt::Nanoseconds> silentFor(rt::Timestamp now) const;
 
  private:
   void run(const std::stop_token& stop);
   void carryOut(CameraAction action);
+  [[nodiscard]] std::vector<std::string> remarksNow();
   [[nodiscard]] CameraFacts facts() const;
 
   CameraDoor door_;
@@ -74,12 +85,14 @@ class CameraSupervisor {
 
   CameraMachine machine_;                // the thread's
   std::unique_ptr<hal::Camera> camera_;  // likewise
+  LargePacketWatch large_packets_;       // likewise
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  CameraHealth health_;   // guarded by mutex_
-  bool settled_ = false;  // likewise
-  rt::Thread thread_;     // last: joined before anything else goes
+  CameraHealth health_;               // guarded by mutex_
+  std::vector<std::string> remarks_;  // likewise
+  bool settled_ = false;              // likewise
+  rt::Thread thread_;                 // last: joined before anything else goes
 };
 
 }  // namespace appliance

@@ -10,6 +10,7 @@
 #include <arpa/inet.h>
 
 #include "appliance/config/toml_reader.h"
+#include "rt/printable.h"
 
 namespace appliance {
 namespace {
@@ -24,6 +25,14 @@ class Section {
   [[nodiscard]] Section sub(std::string_view key) {
     own_keys_.push_back(key);
     return {table_.table(key), path_ + std::string(key) + ".", *all_};
+  }
+  /// The tables of `[[key]]`, in the file's order.
+  [[nodiscard]] std::vector<Section> subs(std::string_view key, std::vector<std::string>& keys) {
+    own_keys_.push_back(key);
+    std::vector<Section> found;
+    for (TomlTable& table : table_.tables(key))
+      found.push_back({std::move(table), path_ + std::string(key) + ".", keys});
+    return found;
   }
 
   void text(std::string_view key, std::string& value) { value = named(key).textOr(key, value); }
@@ -98,11 +107,9 @@ void readCameras(Section section, Config::Cameras& cameras) {
   if (TomlTable& table = section.named("white_balance_rgb"); table.has("white_balance_rgb"))
     cameras.white_balance_rgb = table.numbers<3>("white_balance_rgb", {0.1, 16});
   section.integer("packet_size_bytes", cameras.packet_size_bytes, {576, 16000, "bytes"});
-  section.integer("packet_delay_ns", cameras.packet_delay_ns, {0, 1'000'000, "ns"});
+  section.integer("packet_delay_ns", cameras.packet_delay_ns, {-1, 1'000'000, "ns"});
   section.integer("socket_buffer_bytes", cameras.socket_buffer_bytes,
                   {64 * 1024, 256 * 1024 * 1024, "bytes"});
-  section.integer("packet_timeout_us", cameras.packet_timeout_us, {100, 1'000'000, "us"});
-  section.integer("frame_retention_us", cameras.frame_retention_us, {1000, 1'000'000, "us"});
   section.numbers("opto_delay_us", cameras.opto_delay_us, {0, 1000, "us"});
   section.end();
 
@@ -113,6 +120,45 @@ void readCameras(Section section, Config::Cameras& cameras) {
     if (!seen.insert(address).second)
       section.fail("addresses", address + " stands twice; every camera needs its own address");
   }
+}
+
+void readNetwork(Section section, Config::Network& network) {
+  section.integer("uplinks", network.uplinks, {1, 64, "uplinks"});
+  section.number("uplink_gbps", network.uplink_gbps, {0.1, 400, "Gb/s"});
+  section.number("camera_link_gbps", network.camera_link_gbps, {0.1, 100, "Gb/s"});
+  section.end();
+}
+
+void readPolicy(Section& section, hal::ResendPolicy& policy) {
+  section.flag("enabled", policy.enabled);
+  // Aravis waits in whole milliseconds, and below one not at all: a receive thread would spin.
+  section.integer("packet_timeout_us", policy.packet_timeout_us, {1000, 1'000'000, "us"});
+  section.integer("initial_packet_timeout_us", policy.initial_packet_timeout_us,
+                  {0, 1'000'000, "us"});
+  section.integer("frame_retention_us", policy.frame_retention_us, {0, 1'000'000, "us"});
+  section.number("request_ratio", policy.request_ratio, {0, 2});
+  if (policy.frame_retention_us != 0 && policy.frame_retention_us < policy.packet_timeout_us)
+    section.fail("frame_retention_us",
+                 "frame_retention_us must not be below packet_timeout_us: no packet would be "
+                 "asked for again");
+}
+
+void readResend(Section section, Config::Resend& resend) {
+  readPolicy(section, resend.policy);
+  std::vector<std::string> not_listed;
+  const auto models = section.subs("model", not_listed);
+  if (!models.empty()) resend.models.clear();
+  for (Section model : models) {
+    hal::ModelResendPolicy own{.model = {}, .policy = resend.policy};
+    model.word("name", own.model);
+    readPolicy(model, own.policy);
+    model.end();
+    if (std::ranges::find(resend.models, own.model, &hal::ModelResendPolicy::model) !=
+        resend.models.end())
+      model.fail("name", "\"" + own.model + "\" stands twice; give each model once");
+    resend.models.push_back(std::move(own));
+  }
+  section.end();
 }
 
 void readTrigger(Section section, Config::Trigger& trigger) {
@@ -148,6 +194,7 @@ void readDisplay(Section section, Config::Display& display) {
   section.number("zoom", display.zoom, {0.1, 20});
   section.integer("render_threads", display.render_threads, {1, 64, "threads"});
   section.word("font", display.font);
+  section.flag("flicker_compensation", display.flicker_compensation);
   section.end();
 }
 
@@ -214,11 +261,14 @@ void checkTogether(const TomlTable& root, const Config& config) {
     root.fail("trigger", "trigger.pulse_width_us must be shorter than the trigger's period of " +
                              std::to_string(std::lround(period_us)) + " us");
   // An incomplete frame holds its slot, and all that come after it, for the whole retention.
-  const auto needed =
-      static_cast<std::uint32_t>(std::ceil(config.cameras.frame_retention_us / period_us) + 2);
+  double retention_us = config.resend.policy.frame_retention_us;
+  for (const hal::ModelResendPolicy& model : config.resend.models)
+    retention_us = std::max<double>(retention_us, model.policy.frame_retention_us);
+  const double periods = std::max(1.0, std::ceil(retention_us / period_us));
+  const auto needed = static_cast<std::uint32_t>(periods + 2);
   if (config.history.in_flight < needed)
     root.fail("history", "history.in_flight must be at least " + std::to_string(needed) +
-                             " at this trigger rate and cameras.frame_retention_us");
+                             " at this trigger rate and resend.frame_retention_us");
 }
 
 /// Reads what @p root holds over @p config; every key that exists, in the file's order.
@@ -229,6 +279,11 @@ std::vector<std::string> readAll(const TomlTable& root, Config& config) {
   rig.word("file", config.rig.file);
   rig.end();
   readCameras(sections.sub("cameras"), config.cameras);
+  readNetwork(sections.sub("network"), config.network);
+  readResend(sections.sub("resend"), config.resend);
+  Section light = sections.sub("light");
+  light.number("mains_hz", config.light.mains_hz, {10, 100, "Hz"});
+  light.end();
   readTrigger(sections.sub("trigger"), config.trigger);
   readHistory(sections.sub("history"), config.history);
   readDisplay(sections.sub("display"), config.display);
@@ -265,6 +320,11 @@ std::string inQuotes(std::string_view text) {
   return quoted + "\"";
 }
 
+/// How messages name an override.
+std::string nameOf(const std::string& override) {
+  return "--set " + rt::printable(override);
+}
+
 /// An override as a TOML file of one line.
 std::expected<TomlFile, std::string> parseOverride(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -273,9 +333,9 @@ std::expected<TomlFile, std::string> parseOverride(const std::string& text) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
   });
   if (equals == std::string::npos || !plain || key.find('.') == std::string::npos)
-    return std::unexpected("--set " + text + ": not of the form section.key=value");
+    return std::unexpected(nameOf(text) + ": not of the form section.key=value");
   const std::string value = text.substr(equals + 1);
-  const std::string name = "--set " + text;
+  const std::string name = nameOf(text);
   if (value.find('\n') == std::string::npos)
     if (auto file = TomlFile::parse(key + " = " + value, name)) return file;
   return TomlFile::parse(key + " = " + inQuotes(value), name);
@@ -295,9 +355,9 @@ std::expected<Config, std::string> configOf(TomlFile file,
   if (file.fault()) return std::unexpected(*file.fault());
   for (const std::string& text : overrides) {
     const auto layer = parseOverride(text);
-    if (!layer) return std::unexpected(withoutLine(layer.error(), "--set " + text));
+    if (!layer) return std::unexpected(withoutLine(layer.error(), nameOf(text)));
     (void)readAll(layer->root(), config);
-    if (layer->fault()) return std::unexpected(withoutLine(*layer->fault(), "--set " + text));
+    if (layer->fault()) return std::unexpected(withoutLine(*layer->fault(), nameOf(text)));
   }
   checkTogether(file.root(), config);
   if (file.fault()) return std::unexpected(*file.fault());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hal/camera.h"
+#include "hal/resend_policy.h"
 #include "rt/thread.h"
 
 namespace appliance {
@@ -29,12 +30,31 @@ struct Config {
     double gain_db = 0;
     std::array<double, 3> white_balance_rgb{1, 1, 1};
     std::uint32_t packet_size_bytes = 9000;
-    std::uint32_t packet_delay_ns = 0;
+    std::int32_t packet_delay_ns = -1;  ///< below 0: by the network plan
     std::uint32_t socket_buffer_bytes = 4U << 20;
-    std::uint32_t packet_timeout_us = 5000;
-    std::uint32_t frame_retention_us = 30000;
     std::vector<double> opto_delay_us;  ///< one per camera; empty: all the same
     bool operator==(const Cameras&) const = default;
+  };
+
+  /// The cameras' way into this machine.
+  struct Network {
+    std::uint32_t uplinks = 2;
+    double uplink_gbps = 10;
+    double camera_link_gbps = 1;
+    bool operator==(const Network&) const = default;
+  };
+
+  /// Packets that did not arrive; frame_retention_us 0: four fifths of the trigger's period.
+  struct Resend {
+    hal::ResendPolicy policy{.frame_retention_us = 0};
+    std::vector<hal::ModelResendPolicy> models;  ///< for these instead
+    bool operator==(const Resend&) const = default;
+  };
+
+  /// What lights the hall.
+  struct Light {
+    double mains_hz = 50;
+    bool operator==(const Light&) const = default;
   };
 
   struct Trigger {
@@ -70,6 +90,7 @@ struct Config {
     double zoom = 1;
     std::uint32_t render_threads = 2;
     std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    bool flicker_compensation = false;
     bool operator==(const Display&) const = default;
   };
 
@@ -129,6 +150,9 @@ struct Config {
 
   Rig rig;
   Cameras cameras;
+  Network network;
+  Resend resend;
+  Light light;
   Trigger trigger;
   History history;
   Display display;

@@ -44,6 +44,7 @@ std::string toJson(const Status& status) {
       {"frames_incomplete", status.frames_incomplete},
       {"cameras", nlohmann::ordered_json::array()},
       {"genlock", genlockObject(status)},
+      {"light", status.light_text},
       {"degraded", status.degraded},
       {"renderer", status.renderer},
       {"screen", {{"state", nameOf(status.screen)}, {"message", status.screen_message}}},

@@ -39,6 +39,7 @@ struct Status {
   std::vector<CameraStatus> cameras;
   GenlockStatus genlock;
   std::string genlock_text;           ///< the same in one line
+  std::string light_text;             ///< how much the light flickers; empty: not compensated
   std::vector<std::string> degraded;  ///< one line per thing that is less than configured
   std::string renderer;
   hal::ScreenState screen = hal::ScreenState::kShowing;

@@ -122,6 +122,16 @@ bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept {
   return false;
 }
 
+void RenderLoop::evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept {
+  const hal::SourceImage& source = plan.source;
+  const std::size_t bytes = std::size_t{source.width_px} * source.height_px;
+  const double luminance =
+      backgroundLuminance({source.pixels, bytes}, source.width_px, source.height_px);
+  const float gain = flicker_.gain(camera, luminance);
+  for (float& colour : plan.gain_rgb) colour *= gain;
+  counters_.flicker = flicker_.report();
+}
+
 bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
   const Shot& shot = wanted.shot;
   PictureRecord record{.picture_id = picture_id_ + 1,
@@ -150,6 +160,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];
     plan = planWarp(camera, views_[shot.camera_shown],
                     sourceOf(*frame, camera, parameters_.pixel_format));
+    if (plan && parameters_.flicker_compensation) evenOut(*plan, shot.camera_shown);
   }
 
   const auto drawn = parts_.display.render(plan ? &*plan : nullptr, wanted.line);

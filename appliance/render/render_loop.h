@@ -13,6 +13,7 @@
 #include "appliance/geometry/homography.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
+#include "appliance/light/flicker.h"
 #include "appliance/render/command_queue.h"
 #include "appliance/render/history_views.h"
 #include "appliance/render/locked_vblanks.h"
@@ -45,6 +46,7 @@ struct RenderStatus {
   std::uint64_t skipped = 0;  ///< pictures that the display was not ready for
   double shown_hz = 0;  ///< distinct frame sets a second, over the last whole second of pictures
   hal::ScreenStatus screen;
+  FlickerReport flicker;  ///< of the light; nothing but zeros without compensation
 };
 
 /// Everything the render loop works with; all outlives it.
@@ -63,6 +65,7 @@ struct RenderParameters {
   double zoom = 1;
   hal::PixelFormat pixel_format = hal::PixelFormat::kBayerRG8;
   DirectorParameters director;
+  bool flicker_compensation = false;
 };
 
 /// Shows the picture that the director decides on, whenever the shown camera has a new frame or
@@ -109,6 +112,7 @@ class RenderLoop {
   [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
   void noteReady(const StoredFrame& frame) noexcept;
+  void evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept;
   void countShown(rt::Timestamp commit) noexcept;
   void recordFlips() noexcept;
   void talkToGenlock() noexcept;
@@ -129,6 +133,7 @@ class RenderLoop {
 
   Wanted on_screen_;
   bool stale_ = false;  // the screen lost that picture
+  FlickerCompensation flicker_;
   RenderAllowance allowance_;
   bool held_back_ = false;               // the last new live moment was not drawn
   rt::HighQuantile ready_delay_;         // of live frames

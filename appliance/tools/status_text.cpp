@@ -42,6 +42,8 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
       text += "; lost " + std::to_string(unlocks) + " times, the last by " +
               status.at("genlock").at("last_unlock").get<std::string>();
     text += "\n";
+    const std::string light = status.value("light", "");
+    if (!light.empty()) text += "light    " + light + "\n";
     int number = 0;
     for (const auto& camera : status.at("cameras")) {
       ++number;

@@ -8,7 +8,9 @@
 #include "hal/aravis/camera_probe.h"
 #include "hal/aravis/frame_id.h"
 #include "hal/aravis/gobject.h"
+#include "hal/aravis/network_checks.h"
 #include "hal/aravis/profile_push.h"
+#include "hal/aravis/resend.h"
 #include "hal/aravis/stream_socket.h"
 
 namespace hal::aravis {
@@ -36,8 +38,12 @@ FrameStatus statusOf(ArvBuffer* buffer, const CameraProfile& profile) {
 
 class AravisCamera final : public Camera {
  public:
-  AravisCamera(CameraProfile profile, rt::ThreadConfig receive, Ref<ArvCamera> camera)
-      : profile_(std::move(profile)), receive_(std::move(receive)), camera_(std::move(camera)) {}
+  AravisCamera(CameraProfile profile, rt::ThreadConfig receive, Ref<ArvCamera> camera,
+               std::vector<std::string> remarks)
+      : profile_(std::move(profile)),
+        receive_(std::move(receive)),
+        camera_(std::move(camera)),
+        remarks_(std::move(remarks)) {}
   ~AravisCamera() override { stop(); }
 
   std::expected<void, std::string> start(FrameSink& sink,
@@ -45,6 +51,7 @@ class AravisCamera final : public Camera {
                                          std::span<const std::uint32_t> first_slots) override;
   void stop() override;
   [[nodiscard]] CameraStatistics statistics() const override;
+  [[nodiscard]] std::vector<std::string> remarks() const override { return remarks_; }
 
  private:
   static void onStream(void* self, ArvStreamCallbackType type, ArvBuffer* /*null at begin*/) {
@@ -60,6 +67,7 @@ class AravisCamera final : public Camera {
   const CameraProfile profile_;
   const rt::ThreadConfig receive_;
   Ref<ArvCamera> camera_;
+  const std::vector<std::string> remarks_;
   Ref<ArvStream> stream_;
   std::vector<Ref<ArvBuffer>> buffers_;  // one per slot, in slot order
   std::atomic<bool> delivering_{false};  // false while the stream is torn down: it still calls us
@@ -107,12 +115,11 @@ void AravisCamera::configureStream() {
   ArvStream* stream = stream_.get();
   sizeReceiveBuffer(arv_gv_stream_get_port(ARV_GV_STREAM(stream)),
                     static_cast<int>(profile_.socket_buffer_bytes));
-  g_object_set(stream,                                                                 //
-               "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED,                     //
-               "socket-buffer-size", static_cast<gint>(profile_.socket_buffer_bytes),  //
-               "packet-timeout", static_cast<guint>(profile_.packet_timeout_us),       //
-               "initial-packet-timeout", 0U,                                           //
-               "frame-retention", static_cast<guint>(profile_.frame_retention_us), nullptr);
+  g_object_set(stream,                                              //
+               "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED,  //
+               "socket-buffer-size", static_cast<gint>(profile_.socket_buffer_bytes), nullptr);
+  const char* model = arv_camera_get_model_name(camera_.get(), nullptr);
+  applyResend(stream, resendPolicyFor(profile_, model != nullptr ? model : ""));
 }
 
 void AravisCamera::stop() {
@@ -169,9 +176,17 @@ void AravisCamera::deliver() {
   arv_stream_push_buffer(stream_.get(), ARV_BUFFER(g_object_ref(buffers_[next].get())));
 }
 
+/// Aravis makes its table of description formats at the first description it reads, without a lock:
+/// cameras that are opened at once would find it half made, and then have no features.
+void makeSharedTables() {
+  static const Ref<ArvDomDocument> kFirst{
+      arv_dom_implementation_create_document(nullptr, "RegisterDescription")};
+}
+
 /// Opened by address over the interface that the routes name. Aravis' own opening by name looks
 /// through every interface and holds a lock meanwhile: one dead camera would delay all the others.
 Ref<ArvCamera> openByAddress(const std::string& address, GlibError& error) {
+  makeSharedTables();
   const std::string here = localAddressTowards(address);
   const Ref<GInetAddress> interface{g_inet_address_new_from_string(here.c_str())};
   const Ref<GInetAddress> camera{g_inet_address_new_from_string(address.c_str())};
@@ -210,7 +225,8 @@ std::expected<std::unique_ptr<Camera>, std::string> openCamera(const CameraProfi
     return fail("sends frames of " + std::to_string(payload) +
                 " bytes, its size and format ask for " + std::to_string(wanted));
   }
-  return std::make_unique<AravisCamera>(profile, receive, std::move(camera));
+  auto remarks = checkNetwork(camera.get(), profile);
+  return std::make_unique<AravisCamera>(profile, receive, std::move(camera), std::move(remarks));
 }
 
 }  // namespace hal::aravis

@@ -64,9 +64,16 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "cameras.packet_size_bytes=1500",
                                           "cameras.packet_delay_ns=1",
                                           "cameras.socket_buffer_bytes=1000000",
-                                          "cameras.packet_timeout_us=4000",
-                                          "cameras.frame_retention_us=20000",
                                           "cameras.opto_delay_us=[0,30]",
+                                          "network.uplinks=1",
+                                          "network.uplink_gbps=25",
+                                          "network.camera_link_gbps=2.5",
+                                          "resend.enabled=false",
+                                          "resend.packet_timeout_us=4000",
+                                          "resend.initial_packet_timeout_us=500",
+                                          "resend.frame_retention_us=20000",
+                                          "resend.request_ratio=0.5",
+                                          "light.mains_hz=60",
                                           "trigger.backend=x",
                                           "trigger.rate_hz=30",
                                           "trigger.pulse_width_us=50",
@@ -88,6 +95,7 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "display.zoom=2",
                                           "display.render_threads=1",
                                           "display.font=/x",
+                                          "display.flicker_compensation=true",
                                           "display.device=/dev/dri/card1",
                                           "display.mode=800x600",
                                           "display.queue_depth=2",
@@ -166,9 +174,38 @@ TEST(Config, RefusesKeysThatContradictEachOther) {
   EXPECT_THAT(faultOf("[cameras]\nexposure_us = 25000"), HasSubstr("shorter than the trigger's"));
   EXPECT_THAT(faultOf("[trigger]\npulse_width_us = 25000"), HasSubstr("shorter than"));
   EXPECT_THAT(faultOf("[panel]\nlamp_prefix = \"button-\""), HasSubstr("must differ"));
-  EXPECT_THAT(faultOf("[history]\nin_flight = 3"), HasSubstr("in_flight must be at least 4"));
-  EXPECT_THAT(faultOf("", {"trigger.rate_hz=1000", "cameras.exposure_us=500"}),
+  EXPECT_THAT(faultOf("[history]\nin_flight = 2"), HasSubstr("in_flight must be at least 3"));
+  EXPECT_THAT(faultOf("[resend]\nframe_retention_us = 30000",
+                      {"trigger.rate_hz=1000", "cameras.exposure_us=500"}),
               HasSubstr("in_flight must be at least 32"));
+  EXPECT_THAT(faultOf("[resend]\nframe_retention_us = 2000"),
+              HasSubstr("frame_retention_us must not be below packet_timeout_us"));
+}
+
+TEST(Config, RefusesAWaitThatAReceiveThreadWouldSpinIn) {
+  EXPECT_THAT(faultOf("[resend]\npacket_timeout_us = 500"),
+              HasSubstr("packet_timeout_us must be from 1000"));
+}
+
+TEST(Config, GivesAModelItsOwnResendsAndTheCommonOnesForTheRest) {
+  const auto config = parseConfig(
+      "[resend]\nrequest_ratio = 0.5\n"
+      "[[resend.model]]\nname = \"acA1300-75gc\"\npacket_timeout_us = 8000\n"
+      "[[resend.model]]\nname = \"Blackfly\"\nenabled = false\n",
+      "f");
+  ASSERT_TRUE(config.has_value()) << config.error();
+  EXPECT_EQ(config->resend.policy.packet_timeout_us, 3000U);
+  ASSERT_EQ(config->resend.models.size(), 2U);
+  EXPECT_EQ(config->resend.models[0].model, "acA1300-75gc");
+  EXPECT_EQ(config->resend.models[0].policy.packet_timeout_us, 8000U);
+  EXPECT_EQ(config->resend.models[0].policy.request_ratio, 0.5);
+  EXPECT_FALSE(config->resend.models[1].policy.enabled);
+
+  EXPECT_THAT(faultOf("[[resend.model]]\npacket_timeout_us = 8000"), HasSubstr("name"));
+  EXPECT_THAT(faultOf("[[resend.model]]\nname = \"a\"\npacket_timout_us = 8000"),
+              HasSubstr("\"packet_timeout_us\"?"));
+  EXPECT_THAT(faultOf("[[resend.model]]\nname = \"a\"\n[[resend.model]]\nname = \"a\""),
+              HasSubstr("stands twice"));
 }
 
 TEST(Config, OverridesTakeTomlValuesAndBareText) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "hal/camera.h"
+
+namespace appliance {
+
+/// Finds that of every frame only the small packets come: leader and trailer are far below any
+/// MTU, the payload is not. That is what a camera looks like whose MTU was lowered on the way
+/// while it ran; ordinary loss leaves most packets, a dead camera leaves no frame at all.
+///
+/// Pure: told the counts of Camera::statistics() now and then.
+class LargePacketWatch {
+ public:
+  /// @p packets: of a frame, leader and trailer included.
+  explicit LargePacketWatch(std::uint32_t packets) : packets_(packets) {}
+
+  /// Whether, by now, every large packet vanishes: kFrames frames without one, and no complete one
+  /// since. @p counts may start again from 0, as after Camera::start().
+  [[nodiscard]] bool vanish(const hal::CameraStatistics& counts) {
+    if (counts.frames_complete < last_.frames_complete ||
+        counts.frames_incomplete < last_.frames_incomplete) {
+      last_ = {};
+      frames_ = 0;
+    }
+    const std::uint64_t complete = counts.frames_complete - last_.frames_complete;
+    const std::uint64_t incomplete = counts.frames_incomplete - last_.frames_incomplete;
+    const std::uint64_t missing = counts.packets_missing - last_.packets_missing;
+    last_ = counts;
+    // Of a frame given up all packets from the first gap on count as missing.
+    const bool all_missing = 10 * missing >= 9 * incomplete * (packets_ - 1);
+    if (complete > 0 || (incomplete > 0 && !all_missing)) frames_ = 0;
+    if (complete == 0 && all_missing) frames_ += incomplete;
+    return frames_ >= kFrames;
+  }
+
+  static constexpr std::uint64_t kFrames = 3;
+  static constexpr const char* kReason =
+      "every large packet vanishes: was the MTU lowered? Check the network card and the switch";
+
+ private:
+  std::uint32_t packets_;
+  hal::CameraStatistics last_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace appliance

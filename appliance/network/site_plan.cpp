@@ -1,0 +1,48 @@
+#include "appliance/network/site_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace appliance {
+
+NetworkWish networkWish(const Config& config, const Rig& rig) {
+  const auto pixels = [](const RigCamera& camera) {
+    return std::uint64_t{camera.width_px} * camera.height_px;
+  };
+  const RigCamera& largest = *std::ranges::max_element(rig.cameras, {}, pixels);
+  return {.cameras = static_cast<std::uint32_t>(rig.cameras.size()),
+          .width_px = largest.width_px,
+          .height_px = largest.height_px,
+          .rate_hz = config.trigger.rate_hz,
+          .packet_size_bytes = config.cameras.packet_size_bytes,
+          .uplinks = config.network.uplinks,
+          .uplink_gbps = config.network.uplink_gbps,
+          .camera_link_gbps = config.network.camera_link_gbps};
+}
+
+std::expected<FittedSite, std::string> fitToNetwork(Config config, const Rig& rig) {
+  NetworkWish wish = networkWish(config, rig);
+  auto plan = planNetwork(wish);
+  std::string lowered;
+  if (!plan) {
+    const std::string refusal = plan.error().line();
+    wish.rate_hz = std::floor(highestRate_hz(wish) * 10) / 10;
+    if (wish.rate_hz < kLowestRate_hz) return std::unexpected("network: " + refusal);
+    std::array<char, 96> text{};
+    (void)std::snprintf(text.data(), text.size(),
+                        "trigger: runs at %.1f Hz instead of %.4g: ", wish.rate_hz,
+                        config.trigger.rate_hz);
+    lowered = text.data() + refusal;
+    config.trigger.rate_hz = wish.rate_hz;
+    plan = planNetwork(wish);
+  }
+  if (config.cameras.packet_delay_ns < 0) {
+    config.cameras.packet_delay_ns =
+        static_cast<std::int32_t>(std::min<std::int64_t>(plan->packet_delay.count(), 1'000'000));
+  }
+  return FittedSite{std::move(config), std::move(lowered)};
+}
+
+}  // namespace appliance

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <arv.h>
+
+#include "hal/camera_profile.h"
+
+namespace hal::aravis {
+
+/// What the camera's link was negotiated to; nothing where the camera does not tell.
+[[nodiscard]] std::optional<double> linkSpeed_mbps(ArvCamera* camera);
+
+/// Whether a link of @p negotiated_mbps is slower than the plan's. One line for a person, without
+/// the camera's name; empty: it is not.
+[[nodiscard]] std::string slowLink(const CameraProfile& profile, double negotiated_mbps);
+
+}  // namespace hal::aravis
