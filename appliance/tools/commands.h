@@ -19,6 +19,7 @@ struct ControlPlace {
 /// status, mode, delay, view, target, freeze, sweep. @p place outlives the parsing.
 void addControlCommands(CLI::App& kagami, const ControlPlace& place);
 void addConfigCommand(CLI::App& kagami);
+void addPlanCommand(CLI::App& kagami);
 void addReportCommand(CLI::App& kagami);
 void addTraceCommand(CLI::App& kagami);
 

@@ -100,6 +100,7 @@ int main(int argc, char** argv) {
   kagami.add_option("--name", place.name, "the daemon's name on the bus")->capture_default_str();
   appliance::addControlCommands(kagami, place);
   appliance::addConfigCommand(kagami);
+  appliance::addPlanCommand(kagami);
   appliance::addTraceCommand(kagami);
   appliance::addReportCommand(kagami);
   appliance::addFilmCommand(kagami);
