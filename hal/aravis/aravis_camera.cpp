@@ -1,6 +1,7 @@
 #include "hal/aravis/aravis_camera.h"
 
 #include <atomic>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -191,6 +192,10 @@ Ref<ArvCamera> openByAddress(const std::string& address, GlibError& error) {
   const Ref<GInetAddress> interface{g_inet_address_new_from_string(here.c_str())};
   const Ref<GInetAddress> camera{g_inet_address_new_from_string(address.c_str())};
   if (!interface || !camera) return nullptr;
+  // Aravis reads a camera's description with one parser state for the whole process. Cameras that
+  // do not answer were found out before, so nobody waits here for a dead one.
+  static std::mutex one_description_at_a_time;
+  const std::lock_guard lock(one_description_at_a_time);
   const Ref<ArvDevice> device{arv_gv_device_new(interface.get(), camera.get(), error.out())};
   if (!device) return nullptr;
   return Ref<ArvCamera>{arv_camera_new_with_device(device.get(), error.out())};
