@@ -106,6 +106,13 @@ int appendCameras(sd_bus_message* reply, const Status& status) {
   return sd_bus_message_close_container(reply);
 }
 
+int appendCameraReasons(sd_bus_message* reply, const Status& status) {
+  if (const int r = sd_bus_message_open_container(reply, 'a', "s"); r < 0) return r;
+  for (const CameraStatus& camera : status.cameras)
+    if (const int r = sd_bus_message_append(reply, "s", camera.reason.c_str()); r < 0) return r;
+  return sd_bus_message_close_container(reply);
+}
+
 int appendDegraded(sd_bus_message* reply, const Status& status) {
   if (const int r = sd_bus_message_open_container(reply, 'a', "s"); r < 0) return r;
   for (const std::string& line : status.degraded)
@@ -178,6 +185,7 @@ const auto kVtable = std::to_array<sd_bus_vtable>({
     SD_BUS_PROPERTY("FramesLost", "t", onGet<kFramesLost>, 0, 0),
     SD_BUS_PROPERTY("FramesIncomplete", "t", onGet<kFramesIncomplete>, 0, 0),
     SD_BUS_PROPERTY("Cameras", "a(sstt)", onGet<appendCameras>, 0, 0),
+    SD_BUS_PROPERTY("CameraReasons", "as", onGet<appendCameraReasons>, 0, 0),
     SD_BUS_PROPERTY("Degraded", "as", onGet<appendDegraded>, 0, 0),
     SD_BUS_PROPERTY("Renderer", "s", onGet<kRenderer>, 0, 0),
     SD_BUS_PROPERTY("Screen", "s", onGet<kScreen>, 0, 0),

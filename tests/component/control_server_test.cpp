@@ -59,6 +59,7 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
       status.cameras.push_back({.name = "cam" + std::to_string(i),
                                 .state = appliance::CameraState::kStreaming});
     status.cameras[6].state = appliance::CameraState::kLost;
+    status.cameras[6].reason = "no frames since 0.4 s: check its cable";
     status.cameras[6].frames_lost = 3;
     status.degraded = {"memory is not locked", "view 7 \"rear\" is lost"};
     return status;
@@ -192,6 +193,8 @@ TEST_F(ControlInterface, IsIntrospectableAndReadableByBusctl) {
   EXPECT_EQ(outputOf(busctl + property + "Target"), "(ddd) 0 0 1\n");
   EXPECT_EQ(outputOf(busctl + property + "Mode"), "s \"delayed\"\n");
   EXPECT_THAT(outputOf(busctl + property + "Cameras"), HasSubstr("\"cam7\" \"lost\" 3 0"));
+  EXPECT_THAT(outputOf(busctl + property + "CameraReasons"),
+              HasSubstr("\"no frames since 0.4 s: check its cable\""));
   EXPECT_THAT(outputOf(busctl + "call" + object + "org.kagami.Kagami1 SetView u 99"),
               HasSubstr("there is no view 99"));
 }

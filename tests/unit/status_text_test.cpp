@@ -57,4 +57,19 @@ TEST(StatusText, HasALineForTheGenlockAndItsLosses) {
               HasSubstr("; lost 3 times, the last by no_vblanks\n"));
 }
 
+TEST(StatusText, SaysWhatIsWrongWithACameraAndWhatToDo) {
+  Status status = someStatus();
+  status.cameras = {{.name = "left", .state = appliance::CameraState::kStreaming},
+                    {.name = "right",
+                     .state = appliance::CameraState::kLost,
+                     .trouble = appliance::CameraTrouble::kNoAnswer,
+                     .reason = "no frames since 0.4 s: check its cable",
+                     .frames_lost = 16}};
+  const auto text = appliance::statusText(appliance::toJson(status));
+  ASSERT_TRUE(text.has_value()) << text.error();
+  EXPECT_THAT(*text, HasSubstr("camera 2 (right): lost: no frames since 0.4 s: check its cable; 16 "
+                               "lost, 0 incomplete\n"));
+  EXPECT_THAT(*text, Not(HasSubstr("left"))) << "all is well with it";
+}
+
 }  // namespace
