@@ -56,8 +56,8 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     status.screen = screen_;
     status.frames_lost = 3;
     for (int i = 1; i <= 20; ++i)
-      status.cameras.push_back({.name = "cam" + std::to_string(i),
-                                .state = appliance::CameraState::kStreaming});
+      status.cameras.push_back(
+          {.name = "cam" + std::to_string(i), .state = appliance::CameraState::kStreaming});
     status.cameras[6].state = appliance::CameraState::kLost;
     status.cameras[6].reason = "no frames since 0.4 s: check its cable";
     status.cameras[6].frames_lost = 3;
