@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "appliance/geometry/rig_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
