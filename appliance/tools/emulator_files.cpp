@@ -11,6 +11,9 @@
 namespace appliance {
 namespace {
 
+/// 73 years in nanoseconds: sums of instants stay far from overflow.
+constexpr std::int64_t kLargest = std::int64_t{1} << 61;
+
 std::optional<std::array<std::int64_t, 7>> sevenNumbers(std::string_view line) {
   std::array<std::int64_t, 7> numbers{};
   const char* at = line.data();
@@ -18,7 +21,7 @@ std::optional<std::array<std::int64_t, 7>> sevenNumbers(std::string_view line) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
     const auto read = std::from_chars(at, end, numbers[i]);
-    if (read.ec != std::errc{} || numbers[i] < 0) return std::nullopt;
+    if (read.ec != std::errc{} || numbers[i] < 0 || numbers[i] > kLargest) return std::nullopt;
     at = read.ptr;
   }
   if (at != end) return std::nullopt;

@@ -19,6 +19,9 @@ namespace {
 
 using nlohmann::json;
 
+/// 73 years: what is later is no instant of a run, and sums of instants stay far from overflow.
+constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;
+
 constexpr std::array<std::string_view, 4> kModeNames = {"live", "delayed", "frozen", "sweep"};
 constexpr std::array<std::string_view, 4> kStatusNames = {"complete", "incomplete", "wrong_size",
                                                           "aborted"};
@@ -145,13 +148,13 @@ struct JsonReader {
   }
   static bool take(const json& from, rt::Timestamp& to) {
     std::int64_t t_ns = 0;
-    if (!take(from, t_ns) || t_ns < 0) return false;
+    if (!take(from, t_ns) || t_ns < 0 || t_ns > kLatest_ns) return false;
     to = rt::fromNs(t_ns);
     return true;
   }
   static bool take(const json& from, rt::Nanoseconds& to) {
     std::int64_t time_ns = 0;
-    if (!take(from, time_ns)) return false;
+    if (!take(from, time_ns) || time_ns < -kLatest_ns || time_ns > kLatest_ns) return false;
     to = rt::Nanoseconds(time_ns);
     return true;
   }

@@ -75,8 +75,14 @@ constexpr PictureRecord kPicture{.picture_id = 9,
                                  .warp_submit = fromNs(6),
                                  .upload_end = fromNs(7),
                                  .warp_end = fromNs(8),
-                                 .commit = fromNs(std::numeric_limits<std::int64_t>::max()),
+                                 .commit = fromNs(std::int64_t{1} << 61),
                                  .button_event = fromNs(10)};
+
+TEST(TraceFile, RefusesAnInstantWhoseSumsWouldOverflow) {
+  const std::string run = appliance::toLine(someRun());
+  const rt::Timestamp latest = fromNs(std::numeric_limits<std::int64_t>::max());
+  EXPECT_THAT(faultOf(run + lineOf(SetRecord{1, latest})), HasSubstr("set_complete_ns"));
+}
 
 TEST(TraceFile, ReadsBackWhatWasWritten) {
   std::string text = appliance::toLine(someRun());
