@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <optional>
 
 #include <opencv2/videoio.hpp>
+
+#include "rt/printable.h"
 
 namespace emulator {
 namespace {
@@ -14,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kUnitsPerPixel = 64;
+constexpr double kLargestSidePx = 16'384;
 constexpr double kMetresPerMillimetre = 1e-3;
 
 /// Triangulated from the four views at picture 50 of 100.
@@ -37,7 +41,9 @@ class Numbers {
     const auto text = attribute(element_, name);
     double value = 0;
     const bool ok =
-        text && std::from_chars(text->data(), text->data() + text->size(), value).ec == std::errc{};
+        text &&
+        std::from_chars(text->data(), text->data() + text->size(), value).ec == std::errc{} &&
+        std::isfinite(value);
     if (!ok && missing_.empty()) missing_ = name;
     return value;
   }
@@ -48,10 +54,18 @@ class Numbers {
   std::string missing_;
 };
 
+bool isPlain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_';
+}
+
 std::expected<CameraModel, std::string> parseCamera(std::string_view element) {
   CameraModel camera;
   camera.name = attribute(element, "serial").value_or("");
-  if (camera.name.empty()) return std::unexpected("a camera without a serial");
+  // It becomes a file's name.
+  if (camera.name.empty() || !std::ranges::all_of(camera.name, isPlain))
+    return std::unexpected("a camera needs a serial of letters, digits, - and _, not \"" +
+                           rt::printable(camera.name) + "\"");
   Numbers number(element);
   const std::array<double, 3> centre_m = {number("x") * kMetresPerMillimetre,
                                           number("y") * kMetresPerMillimetre,
@@ -71,11 +85,16 @@ std::expected<CameraModel, std::string> parseCamera(std::string_view element) {
   camera.distortion = {number("radialDistortion1"), number("radialDistortion2"),
                        number("tangentalDistortion1"), number("tangentalDistortion2"),
                        number("radialDistortion3")};
-  camera.image_size = {static_cast<std::uint32_t>(number("right") - number("left")) + 1,
-                       static_cast<std::uint32_t>(number("bottom") - number("top")) + 1};
+  const double width_px = number("right") - number("left") + 1;
+  const double height_px = number("bottom") - number("top") + 1;
   if (!number.missing().empty()) {
-    return std::unexpected("camera " + camera.name + " has no " + number.missing());
+    return std::unexpected("camera " + camera.name + " has no number " + number.missing());
   }
+  if (!(width_px >= 1 && width_px <= kLargestSidePx && height_px >= 1 &&
+        height_px <= kLargestSidePx)) {
+    return std::unexpected("camera " + camera.name + " has a fov_marker that is no picture's size");
+  }
+  camera.image_size = {static_cast<std::uint32_t>(width_px), static_cast<std::uint32_t>(height_px)};
   return camera;
 }
 
