@@ -12,8 +12,8 @@
 
 namespace test {
 
-/// Gives the emulator at @p address one command, "7 kill"; its answer, "ok" when it was taken, empty
-/// when none came.
+/// Gives the emulator at @p address one command, "7 kill"; its answer, "ok" when it was taken,
+/// empty when none came.
 [[nodiscard]] inline std::string sendFault(const std::string& address, std::uint16_t port,
                                            const std::string& command) {
   sockaddr_in to{};

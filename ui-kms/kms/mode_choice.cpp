@@ -52,7 +52,8 @@ std::expected<std::optional<ModeWish>, std::string> parseModeWish(std::string_vi
            whole() && wish.refresh_hz > 0;
   }
   if (good && wish.width_px > 0 && wish.height_px > 0) return wish;
-  return std::unexpected("\"" + rt::printable(text) + "\" is no mode: write it as \"1920x1080@59.94\"");
+  return std::unexpected("\"" + rt::printable(text) +
+                         "\" is no mode: write it as \"1920x1080@59.94\"");
 }
 
 bool fulfils(const drmModeModeInfo& mode, const ModeWish& wish) {
