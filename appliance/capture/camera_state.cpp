@@ -36,7 +36,7 @@ std::string wrongOf(const CameraHealth& health) {
 }  // namespace
 
 std::string reasonOf(const CameraHealth& health, std::optional<rt::Nanoseconds> silent_for) {
-  const std::string wrong = wrongOf(health);
+  std::string wrong = wrongOf(health);
   if (health.state != CameraState::kLost) return wrong;
   const bool tells_itself =
       health.trouble == CameraTrouble::kHeld || health.trouble == CameraTrouble::kRefuses;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <memory>
 
@@ -124,7 +125,7 @@ std::vector<std::uint32_t> packetSizesBelow(std::uint32_t asked_bytes) {
 std::uint32_t delayForSize(const CameraProfile& profile, std::uint32_t bytes) {
   const double share =
       static_cast<double>(bytes + kEthernetBytes) / (profile.packet_size_bytes + kEthernetBytes);
-  return static_cast<std::uint32_t>(profile.packet_delay_ns * share + 0.5);
+  return static_cast<std::uint32_t>(std::lround(profile.packet_delay_ns * share));
 }
 
 PacketSize provePacketSize(ArvCamera* camera, const CameraProfile& profile) {
