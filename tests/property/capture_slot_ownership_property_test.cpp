@@ -49,9 +49,6 @@ RC_GTEST_PROP(SlotOwnership, NoSlotLeaksNorIsFilledTwiceHoweverOftenTheStreamEnd
         stream.in_hand[at] = frames.store(stream.in_hand[at], {.trigger = trigger});
         break;
       }
-      case 2: {  // a frame that is not stored is filled over: nothing moves
-        break;
-      }
       case 3: {
         if (pins.size() == kReserve || *rc::gen::inRange(0, 2) == 0) {
           if (!pins.empty()) pins.pop_back();
@@ -62,6 +59,8 @@ RC_GTEST_PROP(SlotOwnership, NoSlotLeaksNorIsFilledTwiceHoweverOftenTheStreamEnd
       }
       case 4:  // the stream ends in the midst of any frames, and another begins
         stream = Stream(frames);
+        break;
+      default:  // a frame that is not stored is filled over: nothing moves
         break;
     }
 
