@@ -15,10 +15,10 @@ std::optional<std::uint64_t> FrameNamer::clockFits(const Belief& belief, const F
       Association::edgeNear(belief.clock_zero + frame.camera_clock, kTolerance, edges);
   if (!trigger || *trigger <= belief.trigger) return std::nullopt;
   if (!association_.canArrive(edges.edge(*trigger), frame.arrival)) return std::nullopt;
-  // Every frame has a trigger of its own; a camera that was started anew counts from one again.
-  const bool too_slow = frame.frame_id > belief.frame_id &&
-                        *trigger - belief.trigger < frame.frame_id - belief.frame_id;
-  if (too_slow) return std::nullopt;
+  // A camera that counts from one again was started anew: its clock too may be another one.
+  if (frame.frame_id <= belief.frame_id) return std::nullopt;
+  // Every frame has a trigger of its own.
+  if (*trigger - belief.trigger < frame.frame_id - belief.frame_id) return std::nullopt;
   return trigger;
 }
 

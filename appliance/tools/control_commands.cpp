@@ -65,7 +65,7 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
 
   CLI::App* target = kagami.add_subcommand("target", "Set the point that stays in the centre");
   const auto target_m = std::make_shared<std::vector<double>>();
-  target->add_option("position", *target_m, "metres in the rig frame, +Z up")
+  target->add_option("POSITION", *target_m, "metres in the rig frame, +Z up")
       ->required()
       ->expected(3)
       ->delimiter(',');
