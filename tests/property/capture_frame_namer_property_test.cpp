@@ -123,6 +123,7 @@ class Model {
         clock_base_ = edge(trigger_);
         clock_set_ = 1ms;
         frame_id_ = 0;
+        namer_.restart();  // it has forgotten whom to send to: its stream was started anew
         break;
       case Event::kClockSet:
         // Once in a run: two that add up to a period cannot be seen from outside.
