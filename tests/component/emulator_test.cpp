@@ -475,7 +475,11 @@ TEST_F(EmulatorFaultTest, DeliversThroughAWireThatReordersAndDoublesPackets) {
 TEST_F(EmulatorFaultTest, LosesLargeDatagramsOnAPathThatDoesNotCarryThem) {
   fault("mtu 1500");
   pulse();
-  const BufferPointer buffer = frame();
+  BufferPointer buffer = frame(1s);
+  if (!buffer) {
+    pulse();  // newer Aravis waits for the payload of a leader until a later frame begins
+    buffer = frame();
+  }
   ASSERT_TRUE(buffer);
   EXPECT_NE(arv_buffer_get_status(buffer.get()), ARV_BUFFER_STATUS_SUCCESS);
   TearDown();
