@@ -3,30 +3,66 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "rt/clock.h"
 
 namespace hal {
 
-/// One registered pair of pictures, borrowed until the next call of the sensor.
-struct DepthFrame {
-  std::span<const std::uint16_t> depth_mm;   ///< row-major; 0 where nothing was measured
-  std::span<const std::uint8_t> colour_rgb;  ///< the same size in pixels; empty without colour
-  std::uint32_t width_px = 0;
-  std::uint32_t height_px = 0;
-  rt::Timestamp exposure;  ///< when the light was taken, sensor latency already removed
+/// Pinhole of a registered pair; integer coordinates are pixel centres.
+struct DepthLens {
+  double focal_x_px = 0, focal_y_px = 0;
+  double centre_x_px = 0, centre_y_px = 0;
 };
 
-/// An RGB-D sensor that looks at the athlete.
+/// One registered pair of pictures, borrowed until the next call of the sensor.
+struct DepthFrame {
+  std::span<const std::uint16_t> depth_mm;  ///< row-major, along the axis; 0: nothing measured
+  std::span<const std::uint8_t>
+      colour_rgb;  ///< the same size in pixels, sRGB; empty without colour
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  DepthLens lens;
+  std::uint64_t number = 0;   ///< counted by the sensor: a gap is a lost picture
+  rt::Timestamp exposure;     ///< when the light was taken: clock fitted, latency removed
+  rt::Timestamp frame_ready;  ///< it arrived on this machine
+};
+
+enum class DepthState : std::uint8_t {
+  kConnecting,  ///< looked for; never seen yet
+  kStreaming,
+  kLost,   ///< was there; looked for all the time
+  kEnded,  ///< a recording came to its end
+};
+
+struct DepthStatus {
+  DepthState state = DepthState::kConnecting;
+  std::string name;     ///< what the sensor calls itself, or the recording's path
+  std::string message;  ///< what is less than asked for and what to do; empty: nothing
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  bool colour = false;
+  std::uint64_t frames = 0;          ///< delivered
+  std::uint64_t lost = 0;            ///< numbers that never came, since it was first connected
+  std::uint64_t without_colour = 0;  ///< delivered, but colour should have come and did not
+  std::uint64_t returns = 0;         ///< how often it came back after it was lost
+  double drift_ppm = 0;              ///< how much faster than ours its clock runs
+};
+
+/// An RGB-D sensor that looks at the athlete, or a recording of one.
 ///
-/// Threads  One caller: the tracker.
+/// The sensor supervises itself while its caller waits: one that goes is looked for, and comes
+/// back as it was.
+///
+/// Threads  One caller: the tracker. status(): any thread.
 /// RT       Blocks; never called from a real-time thread.
-/// Errors   No frame within the timeout is nullopt; alive() tells silence from loss.
+/// Errors   No frame within the timeout is nullopt; status() tells silence, loss and end apart.
 class DepthSensor {
  public:
   virtual ~DepthSensor() = default;
+  /// The next pair, oldest first.
   [[nodiscard]] virtual std::optional<DepthFrame> waitFrame(rt::Nanoseconds timeout) = 0;
-  [[nodiscard]] virtual bool alive() const = 0;
+  [[nodiscard]] virtual DepthStatus status() const = 0;
 };
 
 }  // namespace hal

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <expected>
+#include <filesystem>
+#include <string>
+
+namespace hal::openni {
+
+/// A folder from which OpenNI2 loads the drivers of our choice.
+///
+/// OpenNI2 looks for drivers beside its own library and nowhere else, and only for names that end
+/// in ".so.0". So its library is copied into a folder of its own, with links to the driver of
+/// recordings and to everything in the configured folder. The process that uses it starts with
+/// this folder first in LD_LIBRARY_PATH.
+///
+/// Threads  One caller.
+/// Errors   One line for a person: no such folder, no driver in it, no OpenNI2 here.
+class DriverStage {
+ public:
+  /// @p drivers: a folder with one or more lib*.so, and what else they need.
+  [[nodiscard]] static std::expected<DriverStage, std::string> make(
+      const std::filesystem::path& drivers);
+
+  /// One that make() made, in this process or in that which started this one.
+  explicit DriverStage(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  DriverStage(DriverStage&& other) noexcept : folder_(std::move(other.folder_)) {
+    other.folder_.clear();
+  }
+  DriverStage& operator=(DriverStage&&) = delete;
+  ~DriverStage() { remove(); }
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// Once the drivers are loaded nobody needs it any more.
+  void remove();
+  /// Leaves it to the program that this process becomes.
+  void leave() { folder_.clear(); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace hal::openni

@@ -1,0 +1,215 @@
+#include "hal/openni/openni_sensor.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <poll.h>
+
+namespace hal::openni {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = WireMessage::Kind;
+
+constexpr rt::Nanoseconds kRestart = 200ms;  // from one worker's end to the next one's start
+constexpr rt::Nanoseconds kSilence = 1s;     // of a streaming sensor
+constexpr rt::Nanoseconds kOpening = 10s;    // a driver may take its time
+constexpr rt::Nanoseconds kForever = 24h * 365;
+
+std::vector<std::string> argumentsOf(const SensorSettings& settings) {
+  return {"--source",  settings.source,
+          "--drivers", settings.drivers,
+          "--width",   std::to_string(settings.width_px),
+          "--height",  std::to_string(settings.height_px),
+          "--rate",    std::to_string(settings.rate_hz),
+          "--colour",  settings.colour ? "true" : "false"};
+}
+
+}  // namespace
+
+std::expected<std::unique_ptr<OpenniSensor>, std::string> OpenniSensor::open(
+    const SensorSettings& settings) {
+  auto worker = WorkerProcess::start(argumentsOf(settings));
+  if (!worker) return std::unexpected(worker.error());
+  return std::unique_ptr<OpenniSensor>(new OpenniSensor(settings, std::move(*worker)));
+}
+
+OpenniSensor::OpenniSensor(SensorSettings settings, WorkerProcess worker)
+    : settings_(std::move(settings)), worker_(std::move(worker)), heard_(rt::now()) {
+  status_.name = settings_.source;
+}
+
+DepthStatus OpenniSensor::status() const {
+  const std::scoped_lock lock(mutex_);
+  return status_;
+}
+
+std::optional<DepthFrame> OpenniSensor::waitFrame(rt::Nanoseconds timeout) {
+  if (lent_ && worker_) worker_->release(*lent_);
+  lent_.reset();
+  const rt::Timestamp until = rt::now() + timeout;
+  for (;;) {
+    if (due_) {
+      if (settings_.play == Play::kRealTime && due_exposure_ > rt::now()) {
+        std::this_thread::sleep_until(std::min(due_exposure_, until));
+        if (due_exposure_ > rt::now()) return std::nullopt;
+      }
+      const WireMessage message = *std::exchange(due_, std::nullopt);
+      lent_ = message.slot;
+      return frameOf(message, due_exposure_);
+    }
+    turn(until);
+    if (!due_ && rt::now() >= until) return std::nullopt;
+  }
+}
+
+void OpenniSensor::turn(rt::Timestamp until) {
+  const auto pauseUntil = [until](rt::Timestamp at) {
+    std::this_thread::sleep_until(std::min(at, until));
+  };
+  if (!worker_) {
+    if (start_at_ > rt::now()) return pauseUntil(start_at_);
+    auto worker = WorkerProcess::start(argumentsOf(settings_));
+    if (!worker) {
+      note([&](DepthStatus& status) { status.message = worker.error(); });
+      start_at_ = rt::now() + 1s;
+      return;
+    }
+    worker_ = std::move(*worker);
+    heard_ = rt::now();
+  }
+  Received received;
+  switch (tryReceive(worker_->socket(), received)) {
+    case ReceiveResult::kMessage:
+      heard_ = rt::now();
+      return onMessage(received);
+    case ReceiveResult::kClosed:
+      return lose("depth sensor: its driver crashed; starting it anew");
+    case ReceiveResult::kNothing:
+      break;
+  }
+  if (rt::now() >= silentUntil()) {
+    worker_->kill();
+    return lose("depth sensor " + status_.name +
+                " fell silent: starting it anew; if that lasts, "
+                "check its cable and power");
+  }
+  pollfd wire{.fd = worker_->socket(), .events = POLLIN, .revents = 0};
+  const auto left = std::max<rt::Nanoseconds>(std::min(until, silentUntil()) - rt::now(), 0ns);
+  const timespec limit{.tv_sec = left / 1s, .tv_nsec = (left % 1s).count()};
+  (void)::ppoll(&wire, 1, &limit, nullptr);
+}
+
+rt::Timestamp OpenniSensor::silentUntil() const {
+  if (streamed_ && worker_->hello().recording) return rt::now() + kForever;
+  return heard_ + (streamed_ ? kSilence : kOpening);
+}
+
+void OpenniSensor::onMessage(Received& received) {
+  const WireMessage& message = received.message;
+  switch (message.kind) {
+    case Kind::kNote:
+      return note([&](DepthStatus& status) { status.message = message.textView(); });
+    case Kind::kHello:
+      return onHello(message, std::move(received.descriptor));
+    case Kind::kFrame:
+      return onFrame(message);
+    case Kind::kEnd:
+      return onEnd();
+    case Kind::kFail:
+      return lose(std::string(message.textView()));
+    case Kind::kRelease:
+      return;  // ours alone
+  }
+}
+
+void OpenniSensor::onHello(const WireMessage& message, rt::UniqueFd memory) {
+  if (!worker_->accept(message, std::move(memory)))
+    return lose("depth sensor: kagami-depth is of another version than this program");
+  clock_.emplace();
+  last_number_ = 0;
+  note([&](DepthStatus& status) {
+    status.name = message.textView();
+    status.width_px = message.width_px;
+    status.height_px = message.height_px;
+    status.colour = message.colour;
+  });
+}
+
+void OpenniSensor::onFrame(const WireMessage& message) {
+  if (!worker_->accepted() || message.slot >= kWireSlots)
+    return lose("depth sensor: kagami-depth is of another version than this program");
+  due_ = message;
+  due_exposure_ = exposureOf(message);
+  std::uint64_t missing = 0;
+  if (last_number_ != 0 && message.number > last_number_ + 1)
+    missing = message.number - last_number_ - 1;
+  last_number_ = message.number;
+  streamed_ = true;
+  const bool came_back = std::exchange(was_lost_, false);
+  note([&](DepthStatus& status) {
+    if (came_back) {
+      ++status.returns;
+      status.message.clear();
+    }
+    status.state = DepthState::kStreaming;
+    status.lost += missing;
+    ++status.frames;
+    if (status.colour && !message.with_colour) ++status.without_colour;
+    status.drift_ppm = worker_->hello().recording ? 0 : clock_->drift_ppm();
+  });
+}
+
+rt::Timestamp OpenniSensor::exposureOf(const WireMessage& message) {
+  if (worker_->hello().recording) {
+    return play_clock_.due(message.stamp_us, rt::now());
+  }
+  const rt::Timestamp arrival = rt::fromNs(message.frame_ready_ns);
+  clock_->add(message.stamp_us, arrival);
+  return std::min(clock_->earliestArrival(message.stamp_us), arrival) - settings_.latency;
+}
+
+void OpenniSensor::onEnd() {
+  worker_.reset();
+  streamed_ = false;
+  play_clock_ = {};
+  start_at_ = rt::now();
+  if (settings_.repeat && last_number_ != 0) return;
+  note([](DepthStatus& status) {
+    status.state = DepthState::kEnded;
+    if (status.frames == 0) status.message = status.name + ": holds no picture that can be played";
+  });
+  start_at_ = rt::now() + kForever;
+}
+
+void OpenniSensor::lose(const std::string& why) {
+  lent_.reset();  // gone with its worker
+  due_.reset();
+  worker_.reset();
+  was_lost_ = was_lost_ || streamed_;
+  streamed_ = false;
+  note([&](DepthStatus& status) {
+    if (status.frames > 0) status.state = DepthState::kLost;
+    status.message = why;
+  });
+  start_at_ = rt::now() + kRestart;
+}
+
+DepthFrame OpenniSensor::frameOf(const WireMessage& message, rt::Timestamp exposure) {
+  const WireMessage& hello = worker_->hello();
+  return {
+      .depth_mm = worker_->depth(message.slot),
+      .colour_rgb =
+          message.with_colour ? worker_->colour(message.slot) : std::span<const std::uint8_t>{},
+      .width_px = hello.width_px,
+      .height_px = hello.height_px,
+      .lens = hello.lens,
+      .number = message.number,
+      .exposure = exposure,
+      .frame_ready = worker_->hello().recording ? rt::now() : rt::fromNs(message.frame_ready_ns)};
+}
+
+}  // namespace hal::openni

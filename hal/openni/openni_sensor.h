@@ -1,0 +1,82 @@
+#pragma once
+
+#include <expected>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "hal/depth_sensor.h"
+#include "hal/openni/clock_fit.h"
+#include "hal/openni/play_clock.h"
+#include "hal/openni/worker_process.h"
+#include "rt/clock.h"
+
+namespace hal::openni {
+
+struct SensorSettings {
+  std::string source;   ///< a URI or the path of an .oni file; empty: the first sensor there is
+  std::string drivers;  ///< folder of OpenNI2 drivers; empty: the system's
+  std::uint32_t width_px = 640;
+  std::uint32_t height_px = 480;
+  std::uint32_t rate_hz = 30;
+  bool colour = true;
+  rt::Nanoseconds latency{0};   ///< of a sensor: from exposure to the most punctual arrival
+  Play play = Play::kRealTime;  ///< of a recording
+  bool repeat = true;           ///< a recording begins anew at its end
+};
+
+/// A sensor, or a recording of one, through OpenNI2.
+///
+/// OpenNI2 and its drivers run in a process of their own, kagami-depth: a driver that blocks,
+/// crashes or loses its sensor for good costs that process, and a new one begins afresh. A sensor
+/// that says nothing for a second is taken for lost.
+///
+/// Threads  waitFrame(): one caller. status(): any.
+/// Errors   open(): never fails for want of a sensor; that is told by status().
+class OpenniSensor final : public DepthSensor {
+ public:
+  [[nodiscard]] static std::expected<std::unique_ptr<OpenniSensor>, std::string> open(
+      const SensorSettings& settings);
+
+  [[nodiscard]] std::optional<DepthFrame> waitFrame(rt::Nanoseconds timeout) override;
+  [[nodiscard]] DepthStatus status() const override;
+
+ private:
+  OpenniSensor(SensorSettings settings, WorkerProcess worker);
+
+  /// One step: what came from the worker, or the next worker, or a wait until @p until at most.
+  void turn(rt::Timestamp until);
+  void onMessage(Received& received);
+  void onHello(const WireMessage& message, rt::UniqueFd memory);
+  void onFrame(const WireMessage& message);
+  void onEnd();
+  void lose(const std::string& why);
+  [[nodiscard]] rt::Timestamp exposureOf(const WireMessage& message);
+  [[nodiscard]] rt::Timestamp silentUntil() const;
+  [[nodiscard]] DepthFrame frameOf(const WireMessage& message, rt::Timestamp exposure);
+
+  template <class Change>
+  void note(const Change& change) {
+    const std::scoped_lock lock(mutex_);
+    change(status_);
+  }
+
+  const SensorSettings settings_;
+  std::optional<WorkerProcess> worker_;
+  rt::Timestamp heard_;     // of the worker
+  rt::Timestamp start_at_;  // of the next one
+  std::optional<ClockFit> clock_;
+  PlayClock play_clock_;
+  std::uint64_t last_number_ = 0;
+  std::optional<WireMessage> due_;  // received, and not shown yet
+  rt::Timestamp due_exposure_;
+  std::optional<std::uint32_t> lent_;  // the slot the caller looks at
+  bool streamed_ = false;              // this worker, once
+  bool was_lost_ = false;
+
+  mutable std::mutex mutex_;  // guards status_
+  DepthStatus status_;
+};
+
+}  // namespace hal::openni
