@@ -45,14 +45,14 @@ void SensorModel::senseRow(const float* depth_m, const std::uint8_t* rgb, std::u
                            std::uint16_t* depth_mm) {
   const std::uint32_t width = format_.width_px;
   const auto f_b = static_cast<float>(format_.focal_px * traits_.baseline_m);
-  // The projector's ray through pixel x leaves at x - disparity: where something nearer to the
-  // left already took that ray, the pixel lies in its shadow.
-  float taken = -1e9F;
-  for (std::uint32_t x = 0; x < width; ++x) {
+  // The projector, on the right, lights pixel x by its ray x - disparity: where something nearer
+  // to the right of it has taken that ray, the pixel lies in its shadow.
+  float taken = 1e9F;
+  for (std::uint32_t x = width; x-- > 0;) {
     const float z = depth_m[x];
     const float ray = z > 0 ? static_cast<float>(x) - f_b / z : 1e9F;
-    shadow_[x] = ray + 0.5F < taken ? 1 : 0;
-    if (z > 0) taken = std::max(taken, ray);
+    shadow_[x] = z > 0 && ray > taken + 0.5F ? 1 : 0;
+    taken = std::min(taken, ray);
   }
   const auto step = static_cast<float>(traits_.disparity_step_px);
   const auto noise_px = static_cast<float>(traits_.disparity_noise_px);
