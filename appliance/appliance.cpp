@@ -117,6 +117,7 @@ std::expected<void, std::string> Appliance::openDevices() {
     if (loopback) loopback_ = std::move(*loopback);
   }
   openPanel();
+  openDepthSensor();
   return {};
 }
 
@@ -135,6 +136,17 @@ void Appliance::openPanel() {
     return;
   }
   panel_ = std::move(*panel);
+}
+
+void Appliance::openDepthSensor() {
+  const Config::DepthSensor& config = config_.depth_sensor;
+  if (config.backend == "none") return;
+  auto sensor = hal::openDepthSensor(config.backend, depthSensorSettings(config));
+  if (!sensor) {
+    degraded_.push_back(sensor.error() + "; the box runs without its depth sensor");
+    return;
+  }
+  depth_loop_ = std::make_unique<DepthLoop>(std::move(*sensor));
 }
 
 std::expected<void, std::string> Appliance::openTrace() {
@@ -201,6 +213,10 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
         [this] { return render_loop_->mode(); });
     started = startThread(panel_thread_, "panel", realtime.panel,
                           [this](auto stop) { panel_loop_->run(stop); });
+  }
+  if (started && depth_loop_) {
+    started =
+        startThread(depth_thread_, "depth", {}, [this](auto stop) { depth_loop_->run(stop); });
   }
   if (started) started = startCameras();
   if (started && loopback_loop_) {
@@ -286,6 +302,7 @@ void Appliance::stopPipeline() {
   for (const auto& supervisor : supervisors_) supervisor->stop();
   loopback_thread_ = {};
   panel_thread_ = {};
+  depth_thread_ = {};
   if (render_thread_.joinable()) {
     render_thread_.requestStop();
     board_.frame_ready.ring();
@@ -340,6 +357,12 @@ Status Appliance::status() const {
   }
   if (panel_loop_ && panel_loop_->lost()) {
     status.degraded.emplace_back("panel: its GPIO chip is gone: check its plug, then restart");
+  }
+  if (depth_loop_) {
+    const DepthReport depth = depth_loop_->report();
+    status.depth_text = depthText(depth);
+    if (std::string trouble = depthTrouble(depth); !trouble.empty())
+      status.degraded.push_back(std::move(trouble));
   }
   for (const auto& supervisor : supervisors_) {
     for (std::string& remark : supervisor->remarks()) status.degraded.push_back(std::move(remark));

@@ -16,6 +16,7 @@
 #include "appliance/capture/trigger_loop.h"
 #include "appliance/config/config.h"
 #include "appliance/control/status.h"
+#include "appliance/depth/depth_loop.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
 #include "appliance/panel/panel_loop.h"
@@ -65,6 +66,7 @@ class Appliance final : public ControlSink, public StatusSource {
   [[nodiscard]] std::expected<void, std::string> makeHistory(const hal::Display& display);
   [[nodiscard]] std::expected<void, std::string> openDevices();
   void openPanel();
+  void openDepthSensor();
   [[nodiscard]] std::expected<void, std::string> openTrace();
   void makeLoops(hal::Display& display, PictureObserver* observer);
   [[nodiscard]] std::expected<void, std::string> startThreads(const hal::Display& display);
@@ -99,9 +101,11 @@ class Appliance final : public ControlSink, public StatusSource {
   std::unique_ptr<LoopbackLoop> loopback_loop_;
   std::unique_ptr<RenderLoop> render_loop_;
   std::unique_ptr<PanelLoop> panel_loop_;
+  std::unique_ptr<DepthLoop> depth_loop_;  // none: no sensor
 
   rt::Thread loopback_thread_;
   rt::Thread panel_thread_;
+  rt::Thread depth_thread_;
   rt::Thread render_thread_;
   rt::Thread trigger_thread_;
 };

@@ -10,6 +10,8 @@
 #include "hal/gpiod/edge_input.h"
 #include "hal/gpiod/panel.h"
 #include "hal/gpiod/trigger_line.h"
+#include "hal/openni/folder_sensor.h"
+#include "hal/openni/openni_sensor.h"
 
 namespace hal {
 namespace {
@@ -69,6 +71,24 @@ Opened<ButtonPanel> openButtonPanel(std::string_view backend, const PanelSetting
     return std::move(opened->panel);
   }
   return std::unexpected(unknown("panel", backend, R"("none", "scripted", "terminal", "gpiod")"));
+}
+
+Opened<DepthSensor> openDepthSensor(std::string_view backend, const DepthSensorSettings& settings) {
+  if (backend == "openni") {
+    return as<DepthSensor>(openni::OpenniSensor::open({.source = settings.source,
+                                                       .drivers = settings.drivers,
+                                                       .width_px = settings.width_px,
+                                                       .height_px = settings.height_px,
+                                                       .rate_hz = settings.rate_hz,
+                                                       .colour = settings.colour,
+                                                       .latency = settings.latency,
+                                                       .repeat = settings.repeat}));
+  }
+  if (backend == "folder") {
+    return as<DepthSensor>(
+        openni::FolderSensor::open({.folder = settings.source, .repeat = settings.repeat}));
+  }
+  return std::unexpected(unknown("depth_sensor", backend, R"("none", "openni", "folder")"));
 }
 
 }  // namespace hal

@@ -12,6 +12,7 @@
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "hal/camera_profile.h"
+#include "hal/depth_sensor.h"
 #include "hal/edge_input.h"
 #include "hal/trigger_line.h"
 #include "rt/thread.h"
@@ -60,5 +61,20 @@ struct PanelSettings {
 [[nodiscard]] Opened<ButtonPanel> openButtonPanel(std::string_view backend,
                                                   const PanelSettings& settings,
                                                   std::vector<std::string>& notes);
+
+struct DepthSensorSettings {
+  std::string source;   ///< "openni": URI or .oni file, empty: the first sensor; "folder": its path
+  std::string drivers;  ///< "openni": folder of OpenNI2 drivers; empty: the system's
+  std::uint32_t width_px = 640;
+  std::uint32_t height_px = 480;
+  std::uint32_t rate_hz = 30;
+  bool colour = true;
+  rt::Nanoseconds latency{};  ///< of a sensor, not of a recording
+  bool repeat = true;         ///< a recording begins anew at its end
+};
+
+/// backend "openni" or "folder". A sensor that is not there is no error: it is looked for.
+[[nodiscard]] Opened<DepthSensor> openDepthSensor(std::string_view backend,
+                                                  const DepthSensorSettings& settings);
 
 }  // namespace hal

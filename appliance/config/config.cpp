@@ -210,6 +210,19 @@ void readPanel(Section section, Config::Panel& panel) {
     section.fail("lamp_prefix", "lamp_prefix must differ from button_prefix");
 }
 
+void readDepthSensor(Section section, Config::DepthSensor& sensor) {
+  section.word("backend", sensor.backend);
+  section.text("source", sensor.source);
+  section.text("drivers", sensor.drivers);
+  section.integer("width_px", sensor.width_px, {64, 4096, "px"});
+  section.integer("height_px", sensor.height_px, {64, 4096, "px"});
+  section.integer("rate_hz", sensor.rate_hz, {1, 240, "Hz"});
+  section.flag("colour", sensor.colour);
+  section.number("latency_ms", sensor.latency_ms, {0, 1000, "ms"});
+  section.flag("repeat", sensor.repeat);
+  section.end();
+}
+
 void readDirector(Section section, Config::Director& director) {
   section.numbers("delay_ladder_s", director.delay_ladder_s, {0.01, 3600, "s"});
   section.number("sweep_views_per_s", director.sweep_views_per_s, {0.1, 240, "views/s"});
@@ -288,6 +301,7 @@ std::vector<std::string> readAll(const TomlTable& root, Config& config) {
   readHistory(sections.sub("history"), config.history);
   readDisplay(sections.sub("display"), config.display);
   readPanel(sections.sub("panel"), config.panel);
+  readDepthSensor(sections.sub("depth_sensor"), config.depth_sensor);
   readDirector(sections.sub("director"), config.director);
   readRecord(sections.sub("record"), config.record);
   readRealtime(sections.sub("realtime"), config.realtime);

@@ -104,6 +104,20 @@ struct Config {
     bool operator==(const Panel&) const = default;
   };
 
+  /// What looks at the athlete's distance.
+  struct DepthSensor {
+    std::string backend = "none";
+    std::string source;   ///< empty: the first sensor
+    std::string drivers;  ///< folder; empty: the system's
+    std::uint32_t width_px = 640;
+    std::uint32_t height_px = 480;
+    std::uint32_t rate_hz = 30;
+    bool colour = true;
+    double latency_ms = 40;  ///< from exposure to arrival
+    bool repeat = true;      ///< a recording
+    bool operator==(const DepthSensor&) const = default;
+  };
+
   struct Director {
     std::vector<double> delay_ladder_s{0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30};
     double sweep_views_per_s = 10;
@@ -157,6 +171,7 @@ struct Config {
   History history;
   Display display;
   Panel panel;
+  DepthSensor depth_sensor;
   Director director;
   Record record;
   Realtime realtime;

@@ -45,6 +45,7 @@ std::string toJson(const Status& status) {
       {"cameras", nlohmann::ordered_json::array()},
       {"genlock", genlockObject(status)},
       {"light", status.light_text},
+      {"depth_sensor", status.depth_text},
       {"degraded", status.degraded},
       {"renderer", status.renderer},
       {"screen", {{"state", nameOf(status.screen)}, {"message", status.screen_message}}},

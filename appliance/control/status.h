@@ -40,6 +40,7 @@ struct Status {
   GenlockStatus genlock;
   std::string genlock_text;           ///< the same in one line
   std::string light_text;             ///< how much the light flickers; empty: not compensated
+  std::string depth_text;             ///< the depth sensor in one line; empty: none configured
   std::vector<std::string> degraded;  ///< one line per thing that is less than configured
   std::string renderer;
   hal::ScreenState screen = hal::ScreenState::kShowing;

@@ -44,6 +44,8 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
     text += "\n";
     const std::string light = status.value("light", "");
     if (!light.empty()) text += "light    " + light + "\n";
+    const std::string depth = status.value("depth_sensor", "");
+    if (!depth.empty()) text += "depth    " + depth + "\n";
     int number = 0;
     for (const auto& camera : status.at("cameras")) {
       ++number;

@@ -3,7 +3,9 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
@@ -37,7 +39,9 @@ std::string becomeStaged(const std::string& drivers, char** argv) {
   if (!stage) return stage.error();
   ::setenv(kStage, stage->folder().c_str(), 1);
   ::setenv("LD_LIBRARY_PATH", stage->folder().c_str(), 1);
-  ::execv("/proc/self/exe", argv);
+  // By its own name: that is what `ps` shows.
+  std::error_code failed;
+  ::execv(std::filesystem::read_symlink("/proc/self/exe", failed).c_str(), argv);
   return "depth sensor: kagami-depth cannot start itself anew";
 }
 

@@ -151,10 +151,7 @@ void OpenniSensor::onFrame(const WireMessage& message) {
   streamed_ = true;
   const bool came_back = std::exchange(was_lost_, false);
   note([&](DepthStatus& status) {
-    if (came_back) {
-      ++status.returns;
-      status.message.clear();
-    }
+    if (came_back) ++status.returns;
     status.state = DepthState::kStreaming;
     status.lost += missing;
     ++status.frames;
