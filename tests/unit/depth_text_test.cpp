@@ -1,0 +1,44 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "appliance/depth/depth_loop.h"
+
+namespace {
+
+using appliance::DepthReport;
+using appliance::depthText;
+using appliance::depthTrouble;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(DepthText, TellsWhatStreamsInOneLine) {
+  DepthReport report{.sensor = {.state = hal::DepthState::kStreaming,
+                                .name = "Acme RGB-D",
+                                .width_px = 640,
+                                .height_px = 480,
+                                .colour = true,
+                                .frames = 900,
+                                .lost = 2},
+                     .rate_hz = 29.97};
+  EXPECT_EQ(depthText(report),
+            "streaming: Acme RGB-D, 640x480 with colour, 30.0 Hz; 900 pictures, 2 lost");
+  EXPECT_EQ(depthTrouble(report), "");
+  report.sensor.returns = 3;
+  report.sensor.without_colour = 4;
+  EXPECT_THAT(depthText(report), HasSubstr("2 lost, 4 without their colour; came back 3 times"));
+}
+
+TEST(DepthText, HasNoNumbersOfASensorThatWasNeverThere) {
+  DepthReport report;
+  report.sensor.message = "no depth sensor found: plug it in";
+  EXPECT_EQ(depthText(report), "connecting");
+  EXPECT_EQ(depthTrouble(report), "no depth sensor found: plug it in");
+}
+
+TEST(DepthText, SaysThatARecordingIsOver) {
+  DepthReport report{.sensor = {.state = hal::DepthState::kEnded, .name = "a.oni", .frames = 60}};
+  EXPECT_THAT(depthText(report), HasSubstr("ended: a.oni"));
+  EXPECT_THAT(depthTrouble(report), HasSubstr("depth_sensor.repeat"));
+}
+
+}  // namespace
