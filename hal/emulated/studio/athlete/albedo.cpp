@@ -112,9 +112,9 @@ vec3 athleteSkinColour(vec3 p) {
   brow *= 0.65 + 0.5 * athleteNoise(vec3(p.x * 700.0 + p.z * 500.0, p.z * 150.0, 3.0));
   skin = mix(skin, athlete_hair * 1.2 + 0.01, clamp(brow, 0.0, 0.92));
   // Lashes: a dark line along the lids.
-  vec2 eye = face - vec2(0.0315, 1.6858);
+  vec2 eye = face - vec2(0.0315, 1.6850);
   eye.y += 0.03 * eye.x;
-  float rim = length(eye / vec2(0.0140, 0.0056));
+  float rim = length(eye / vec2(0.0140, 0.0048));
   float lash = (1.0 - smoothstep(0.06, 0.22, abs(rim - 1.03))) * (eye.y > 0.0 ? 1.0 : 0.45);
   skin = mix(skin, athlete_hair * 0.5, (0.55 + 0.3 * female) * lash * step(0.07, p.y));
   // The scalp under the hair.
@@ -123,12 +123,12 @@ vec3 athleteSkinColour(vec3 p) {
 }
 
 vec3 athleteEyeColour(vec3 p) {
-  vec2 eye = vec2(abs(p.x) - 0.0310, p.z - 1.6857);
+  vec2 eye = vec2(abs(p.x) - 0.0310, p.z - 1.6853);
   float r = length(eye);
   float rays = athleteNoise(vec3(normalize(eye + 1e-5) * 9.0, 1.0));
   vec3 white = vec3(0.62, 0.57, 0.54) * (1.0 - 0.25 * smoothstep(0.006, 0.012, r));
   vec3 iris = athlete_eye * (0.6 + 0.9 * rays) * mix(1.3, 0.5, smoothstep(0.003, 0.0056, r));
-  vec3 colour = mix(iris, white, smoothstep(0.0054, 0.0061, r));
+  vec3 colour = mix(iris, white, smoothstep(0.0051, 0.0058, r));
   colour *= smoothstep(0.0020, 0.0026, r) * 0.97 + 0.03;
   float glint = 1.0 - smoothstep(0.0006, 0.0012, length(eye - vec2(0.0018, 0.0022)));
   return mix(colour, vec3(0.9), glint) * (0.55 + 0.45 * smoothstep(0.0055, 0.0, eye.y));
@@ -148,7 +148,7 @@ vec3 athleteShirtColour(vec3 p) {
   // Panels at the flanks, a band across the chest, cuffs, collar, number and a crest.
   float side = abs(p.x);
   float flank = smoothstep(0.026, 0.022, abs(p.y + 0.01)) * step(p.z, 1.36) * step(0.1, side);
-  float collar = (p.z - 1.512) * 0.93 + (p.y + 0.055) * 0.36 - 0.8 * max(side - 0.072, 0.0);
+  float collar = (p.z - 1.505) * 0.93 + (p.y + 0.055) * 0.36 - 6.0 * side * side;
   float along = dot(vec3(side, p.y, p.z) - vec3(0.18, -0.015, 1.452), vec3(0.9131, 0.0, -0.4078)) -
                 3.0 * max(1.22 - p.z, 0.0);
   float trim = max(max(step(-0.017, collar) * step(side, 0.13), smoothstep(0.186, 0.188, along)),
@@ -168,7 +168,7 @@ vec3 athleteShirtColour(vec3 p) {
   float crest = back ? 0.0 : athleteSpot(at, vec2(0.078, 1.375), vec2(0.018, 0.022), 0.06);
   colour = mix(colour, athlete_trim, clamp(max(max(trim, band * 0.9), max(number, name)), 0.0, 1.0));
   colour = mix(colour, mix(athlete_trim, athlete_shorts, step(0.5, fract(at.x * 70.0))), crest);
-  float seam = smoothstep(0.0014, 0.0006, abs(p.z - 0.885)) + smoothstep(0.0014, 0.0006, abs(along - 0.005));
+  float seam = smoothstep(0.0014, 0.0006, abs(p.z - 0.860)) + smoothstep(0.0014, 0.0006, abs(along - 0.005));
   return colour * weave * (1.0 - 0.35 * clamp(seam, 0.0, 1.0));
 }
 

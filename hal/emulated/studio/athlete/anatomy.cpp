@@ -99,8 +99,8 @@ Anatomy::Anatomy(const BodyShape& shape)
 
   // The arm's cross-sections: side lies in the plane of the arm and the vertical.
   arm_.emplace_back(joint(kUpperArm), joint(kForearm), forward, 0.02F,
-                    thicker({{0.00F, 0.054F, 0.054F, 0.054F},
-                             {0.18F, 0.054F, 0.050F, 0.054F},
+                    thicker({{0.00F, 0.049F, 0.052F, 0.052F},
+                             {0.18F, 0.050F, 0.049F, 0.052F},
                              {0.40F, 0.047F, 0.049F, 0.050F},
                              {0.60F, 0.043F, 0.049F, 0.046F},
                              {0.80F, 0.040F, 0.042F, 0.041F},
@@ -218,8 +218,8 @@ float Anatomy::arm(const Point& p) const {
   const Point along = restArmDirection();
   // Deltoid, biceps, triceps; the point of the elbow.
   d = smoothUnion(d,
-                  ellipsoid(q, joint(kUpperArm) + along * 0.035F + Point{0, 0, 0.012F},
-                            Point{0.085F, 0.062F, 0.056F} * limb),
+                  ellipsoid(q, joint(kUpperArm) + along * 0.040F + Point{0, 0, 0.004F},
+                            Point{0.082F, 0.054F, 0.049F} * limb),
                   0.05F);
   d = smoothUnion(d,
                   ellipsoid(q, joint(kUpperArm) + along * 0.185F + Point{0, 0.016F, 0},

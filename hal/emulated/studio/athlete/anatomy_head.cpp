@@ -38,8 +38,9 @@ float Anatomy::face(const Point& p) const {
 
   // Cheekbones, jaw corners, chin, brow.
   d = smoothUnion(d, ellipsoid(p, {0.043F, 0.054F, 1.660F}, {0.021F, 0.022F, 0.014F}), 0.026F);
-  d = smoothUnion(d, ellipsoid(p, {0.047F, 0.008F, 1.606F}, {0.013F * soft, 0.024F, 0.018F}),
+  d = smoothUnion(d, ellipsoid(p, {0.045F, 0.008F, 1.606F}, {0.012F * soft, 0.024F, 0.018F}),
                   0.03F);
+  d = smoothUnion(d, ellipsoid(p, {0.036F, 0.046F, 1.632F}, {0.022F, 0.030F, 0.026F}), 0.03F);
   d = smoothUnion(d, ellipsoid(p, {0.008F, 0.083F, 1.583F}, {0.016F, 0.012F, 0.010F}), 0.018F);
   d = smoothUnion(
       d, ellipsoid(p, {0.028F, 0.0835F, 1.7035F}, {0.024F, 0.009F * soft + 0.002F, 0.0055F}),
@@ -51,7 +52,7 @@ float Anatomy::face(const Point& p) const {
   float lids = (p - kEye).norm() - (kEyeball_m + 0.0028F);
   const Point e = p - kEye;
   const float almond =
-      ellipsoid(e, {0.0005F, 0.012F, 0.0003F - 0.03F * e.x()}, {0.0138F, 0.016F, 0.0053F});
+      ellipsoid(e, {0.0005F, 0.012F, -0.0005F - 0.03F * e.x()}, {0.0138F, 0.016F, 0.0045F});
   lids = smoothCut(lids, almond, 0.0012F);
   d = smoothUnion(d, lids, 0.005F);
 

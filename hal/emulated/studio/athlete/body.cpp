@@ -119,12 +119,15 @@ Body makeBody(const BodyShape& shape) {
     const auto surface = polygonise(field, x, y, z);
     join(body, surface, clothInfluences(surface, skin, skin_weights, rounds), material, hidden);
   };
-  wear([&](const Point& p) { return tailor.shirt(p); }, lines(-0.5F, 0.5F, 0.0085F, scale, {}),
-       lines(-0.25F, 0.25F, 0.0085F, scale, {}), lines(0.80F, 1.60F, 0.0085F, scale, {}),
+  wear([&](const Point& p) { return tailor.shirt(p); },
+       lines(-0.5F, 0.5F, 0.0095F, scale, {{0.33F, 0.42F, 0.0055F}, {-0.42F, -0.33F, 0.0055F}}),
+       lines(-0.25F, 0.25F, 0.0090F, scale, {}),
+       lines(0.78F, 1.60F, 0.0095F, scale, {{0.825F, 0.85F, 0.0055F}, {1.47F, 1.54F, 0.0065F}}),
        Material::kShirt, 12, never);
   wear([&](const Point& p) { return tailor.shorts(p); }, lines(-0.32F, 0.32F, 0.0090F, scale, {}),
-       lines(-0.25F, 0.25F, 0.0090F, scale, {}), lines(0.53F, 1.10F, 0.0090F, scale, {}),
-       Material::kShorts, 8, [&](const Point& p) { return tailor.shirt(p) < -0.012F; });
+       lines(-0.25F, 0.25F, 0.0090F, scale, {}),
+       lines(0.53F, 1.10F, 0.0095F, scale, {{0.59F, 0.615F, 0.0055F}}), Material::kShorts, 8,
+       [&](const Point& p) { return tailor.shirt(p) < -0.012F; });
   const auto foot_x = lines(-0.22F, 0.22F, 0.0065F, scale, {});
   const auto foot_y = lines(-0.18F, 0.26F, 0.0065F, scale, {});
   wear([&](const Point& p) { return tailor.sock(p); }, foot_x, foot_y,

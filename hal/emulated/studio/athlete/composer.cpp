@@ -32,15 +32,44 @@ ArmPosture holdingArm() {
   return arm;
 }
 
-/// The trunk's height and where it is along a way, step by step.
+/// How a person moves on: a step's length in time and space, and what the body does in it.
 struct Gait {
-  double step_s, step_m, lift_m, double_support, half_width_m;
-  double bob_m, height_m, sway_m, lean, arm_swing, elbow, push_off, heel_strike;
+  double step_s, step_m;
+  double lift_m;
+  double double_support;  ///< of a step; negative: a flight
+  double ahead;           ///< of a step: where the foot lands before the trunk
+  double half_width_m;
+  double bob_m, height_m, sway_m;
+  double lean, arm_swing, elbow, push_off, heel_strike;
 };
-constexpr Gait kWalk{0.54,  0.72, 0.065, 0.20, 0.070, 0.016, 0.958,
-                     0.018, 0.04, 0.42,  0.35, 0.50,  -0.28};
-constexpr Gait kRun{0.36,  1.05, 0.200, -0.32, 0.045, 0.030, 0.915,
-                    0.008, 0.16, 0.70,  1.45,  0.75,  -0.12};
+constexpr Gait kWalk{.step_s = 0.53,
+                     .step_m = 0.66,
+                     .lift_m = 0.065,
+                     .double_support = 0.14,
+                     .ahead = 0.57,
+                     .half_width_m = 0.070,
+                     .bob_m = 0.016,
+                     .height_m = 0.955,
+                     .sway_m = 0.018,
+                     .lean = 0.04,
+                     .arm_swing = 0.42,
+                     .elbow = 0.35,
+                     .push_off = 0.50,
+                     .heel_strike = -0.28};
+constexpr Gait kRun{.step_s = 0.34,
+                    .step_m = 0.86,
+                    .lift_m = 0.24,
+                    .double_support = -0.36,
+                    .ahead = 0.27,
+                    .half_width_m = 0.045,
+                    .bob_m = 0.026,
+                    .height_m = 0.925,
+                    .sway_m = 0.008,
+                    .lean = 0.15,
+                    .arm_swing = 0.62,
+                    .elbow = 1.45,
+                    .push_off = 0.80,
+                    .heel_strike = -0.10};
 
 /// A way without corners, by length.
 class Way {
@@ -230,8 +259,8 @@ void Composer::travel(const std::vector<Vector2d>& way, bool run) {
   rest(now_);
   Side side = random_.unit() < 0.5 ? Side::kRight : Side::kLeft;
   for (int k = 1; k <= steps + 1; ++k) {
-    // Swing of step k: touches down at k, between the trunk's places at k and k + 1.
-    const double s = std::min((sAt(k) + sAt(k + 1)) / 2, path.length());
+    // Swing of step k: touches down at k, before the trunk.
+    const double s = std::min(sAt(k) + gait.ahead * (sAt(k + 1) - sAt(k)), path.length());
     const double h = path.heading(s);
     const double out = side == Side::kRight ? 1 : -1;
     const bool last = k == steps + 1;

@@ -47,7 +47,7 @@ class ThrowWriter {
     s.pelvis_bend.key(at(t), 0.35 * k.bend);
     s.trunk(at(t), {0.65 * k.bend, -mirror_ * k.side, mirror_ * k.twist});
     // The eyes stay on the target.
-    s.head_turn.key(at(t), -mirror_ * std::clamp(k.turn + k.twist, -1.25, 1.25));
+    s.head_turn.key(at(t), -mirror_ * std::clamp(0.85 * (k.turn + k.twist), -1.05, 1.05));
     s.head_bend.key(at(t), -0.55 * k.bend);
   }
   void throwing(double t, const ArmPosture& arm) { c_.arm(throwing_).key(at(t), arm); }

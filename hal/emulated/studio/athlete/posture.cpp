@@ -96,7 +96,7 @@ void poseArm(const ArmPosture& arm, Side side, Draft& draft) {
 
   // The girdle follows the arm: up when it is raised, forwards when it reaches.
   const double raised = arm.swing_up + 0.15;
-  const double shrug = arm.shrug + 0.16 * (raised + std::sqrt(raised * raised + 0.09));
+  const double shrug = arm.shrug - 0.07 + 0.16 * (raised + std::sqrt(raised * raised + 0.09));
   const double reach = arm.reach + 0.10 * std::sin(std::clamp(arm.swing_forward, -1.5, 1.5));
   const Matrix3d girdle = aboutZ(reach) * aboutY(-shrug);
   attach(kClavicle, girdle);

@@ -165,7 +165,15 @@ std::vector<Influence> skinInfluences(const Polygons& skin) {
     weights[v][static_cast<std::size_t>(bone)] = 1;
     rate[v] = fleshRadius(bone) < 0.02F ? 0.25F : 0.9F;  // fingers bend sharply
   }
-  diffuse(neighboursOf(skin), rate, 36, weights);
+  const auto next = neighboursOf(skin);
+  diffuse(next, rate, 36, weights);
+  // The mesh of the neck is fine, yet the neck turns over all of its length.
+  for (std::size_t v = 0; v < weights.size(); ++v) {
+    const Point& p = skin.positions[v];
+    const bool neck = p.z() > 1.46F && p.z() < 1.635F && std::abs(p.x()) < 0.13F;
+    rate[v] = neck ? 0.9F : 0.0F;
+  }
+  diffuse(next, rate, 90, weights);
   std::vector<Influence> result;
   result.reserve(weights.size());
   for (auto& w : weights) {

@@ -9,8 +9,6 @@
 namespace emulator::studio {
 namespace {
 
-constexpr float kCloth_m = 0.012F;  // as thick as the grid can show
-
 Point joint(SideBone bone) {
   return restSkeleton()[static_cast<std::size_t>(boneIndex(bone, Side::kRight))].joint;
 }
@@ -33,7 +31,7 @@ Point mirrored(const Point& p) {
   return {std::abs(p.x()), p.y(), p.z()};
 }
 
-constexpr float kShirtHem_m = 0.865F;
+constexpr float kShirtHem_m = 0.838F;
 constexpr float kShortsHem_m = 0.600F;
 constexpr float kWaistband_m = 1.030F;
 
@@ -66,7 +64,8 @@ float hairLine(float y) {
 Tailor::Tailor(const BodyShape& shape, const Anatomy& anatomy)
     : anatomy_(anatomy),
       hair_cut_(shape.hair_cut),
-      seed_(static_cast<std::uint32_t>(shape.seed * 2654435761U)) {
+      seed_(static_cast<std::uint32_t>(shape.seed * 2654435761U)),
+      cloth_m_(0.012F * static_cast<float>(std::max(shape.cell_scale, 1.0))) {
   const Point forward = Point::UnitY();
   const float g = (1 + 0.10F * anatomy.girth()) * (anatomy.female() ? 0.94F : 1.0F);
   const Point top{0, 0, 1.50F};
@@ -80,25 +79,27 @@ Tailor::Tailor(const BodyShape& shape, const Anatomy& anatomy)
 
   const Point arm = restArmDirection();
   const Point shoulder = joint(SideBone::kUpperArm);
-  const std::vector<Section> sleeve = {{0.00F, 0.062F, 0.064F, 0.066F},
-                                       {0.30F, 0.068F, 0.066F, 0.068F},
-                                       {0.60F, 0.070F, 0.066F, 0.066F},
-                                       {1.00F, 0.071F, 0.066F, 0.066F}};
+  const std::vector<Section> sleeve = {{0.00F, 0.054F, 0.058F, 0.060F},
+                                       {0.30F, 0.062F, 0.062F, 0.064F},
+                                       {0.60F, 0.067F, 0.064F, 0.064F},
+                                       {1.00F, 0.070F, 0.066F, 0.066F}};
   const Point slack{0, 0, -0.006F};  // a sleeve hangs
   sleeve_.emplace_back(shoulder - arm * 0.02F, shoulder + arm * 0.235F + slack * 2, forward, 0.002F,
                        grown(sleeve, g));
 
-  const std::vector<Section> seat = {{0.00F, 0.170F, 0.125F, 0.148F, 0.0F},
-                                     {0.35F, 0.187F, 0.126F, 0.150F, 0.0F},
-                                     {0.65F, 0.182F, 0.122F, 0.134F, 0.0F},
+  const std::vector<Section> seat = {{0.00F, 0.150F, 0.108F, 0.125F, 0.0F},
+                                     {0.25F, 0.184F, 0.124F, 0.146F, 0.0F},
+                                     {0.48F, 0.188F, 0.126F, 0.150F, 0.0F},
+                                     {0.72F, 0.182F, 0.122F, 0.134F, 0.0F},
                                      {1.00F, 0.164F, 0.114F, 0.108F, 0.0F}};
-  seat_.emplace_back(Point{0, 0, 0.845F}, Point{0, 0, kWaistband_m}, forward, 0.006F,
+  seat_.emplace_back(Point{0, 0, 0.79F}, Point{0, 0, kWaistband_m}, forward, 0.006F,
                      grown(seat, g));
-  const std::vector<Section> leg = {{0.00F, 0.108F, 0.112F, 0.112F},
-                                    {0.20F, 0.106F, 0.114F, 0.114F},
-                                    {0.60F, 0.100F, 0.110F, 0.108F},
-                                    {1.00F, 0.101F, 0.110F, 0.108F}};
-  leg_.emplace_back(Point{0.102F, -0.004F, 0.84F}, Point{0.117F, 0.000F, kShortsHem_m - 0.04F},
+  const std::vector<Section> leg = {{0.00F, 0.080F, 0.085F, 0.090F},
+                                    {0.20F, 0.098F, 0.110F, 0.114F},
+                                    {0.45F, 0.102F, 0.112F, 0.112F},
+                                    {0.70F, 0.100F, 0.109F, 0.108F},
+                                    {1.00F, 0.102F, 0.111F, 0.110F}};
+  leg_.emplace_back(Point{0.098F, -0.004F, 0.93F}, Point{0.117F, 0.000F, kShortsHem_m - 0.04F},
                     forward, 0.004F, grown(leg, g));
 }
 
@@ -121,7 +122,8 @@ float Tailor::shirt(const Point& p) const {
 
   const float flesh = smoothUnion(anatomy_.trunk(q), anatomy_.arm(q), 0.045F);
   float outside = smoothUnion(shirt_.front().distance(q), flesh - 0.006F, 0.02F);
-  outside = smoothUnion(outside, seat_.front().distance(q) - 0.006F, 0.02F);
+  const float shorts = smoothUnion(seat_.front().distance(q), leg_.front().distance(q), 0.03F);
+  outside = smoothUnion(outside, shorts - 0.010F, 0.03F);
   outside = smoothUnion(outside, sleeve_.front().distance(q), 0.045F);
   // Folds hang from the armpit and gather at the waist; the chest is stretched smooth.
   const float waist = smoothStep(1.30F, 1.05F, q.z());
@@ -135,15 +137,14 @@ float Tailor::shirt(const Point& p) const {
   outside = std::min(outside, flesh - 0.004F);
 
   // Collar, sleeve ends, hem.
-  const float collar =
-      (q.z() - 1.512F) * 0.93F + (q.y() + 0.055F) * 0.36F - 0.8F * std::max(q.x() - 0.072F, 0.0F);
+  const float collar = (q.z() - 1.505F) * 0.93F + (q.y() + 0.055F) * 0.36F - 6 * q.x() * q.x();
   outside -= 0.0025F * smoothStep(0.020F, 0.014F, std::abs(collar + 0.008F));
   float d = smoothMeet(outside, collar, 0.004F);
   d = smoothMeet(d, along - 0.215F, 0.003F);
   const float hem = kShirtHem_m + 0.008F * folds(p, 0.12F) * 0.5F - q.z();
   d = smoothMeet(d, hem, 0.003F);
   const float openings = std::min(q.z() - kShirtHem_m - 0.06F, 0.16F - along);
-  return std::max(d, -std::max(outside + kCloth_m, openings));
+  return smoothCut(d, std::max(outside + cloth_m_, openings), 0.004F);
 }
 
 float Tailor::shorts(const Point& p) const {
@@ -157,7 +158,7 @@ float Tailor::shorts(const Point& p) const {
   outside -= (0.0015F + 0.0050F * lower) * (folds(stretched, 0.08F) + 0.25F);
   float d = smoothMeet(outside, kShortsHem_m - 0.02F * (q.x() - 0.1F) - q.z(), 0.003F);
   d = smoothMeet(d, q.z() - kWaistband_m, 0.003F);
-  return std::max(d, -std::max(outside + kCloth_m, q.z() - kShortsHem_m - 0.10F));
+  return smoothCut(d, std::max(outside + cloth_m_, q.z() - kShortsHem_m - 0.10F), 0.004F);
 }
 
 float Tailor::sock(const Point& p) const {
@@ -204,6 +205,10 @@ float Tailor::hair(const Point& p) const {
   if (hair_cut_ == HairCut::kFull) thick = 0.016F + 0.014F * top + 0.006F * front;
   if (tail) thick = 0.007F + 0.006F * top;
 
+  float line = hairLine(y);
+  if (hair_cut_ == HairCut::kFull) line -= 0.03F * smoothStep(0.03F, -0.03F, y);
+  thick *= 0.35F + 0.65F * smoothStep(0.0F, tail ? 0.02F : 0.045F, p.z() - line);
+
   // Locks lie along the head: stretched noise, finer across.
   const float azimuth = std::atan2(p.x(), -y + 0.03F);
   const Point combed = tail ? Point{azimuth * 1.0F, p.z() * 60, y * 14}
@@ -211,8 +216,6 @@ float Tailor::hair(const Point& p) const {
   const float locks = smoothNoise(combed, seed_ + 7) + 0.5F * smoothNoise(combed * 2.1F, seed_ + 8);
   float d = anatomy_.cranium(p) - thick - 0.0022F * locks;
 
-  float line = hairLine(y);
-  if (hair_cut_ == HairCut::kFull) line -= 0.03F * smoothStep(0.03F, -0.03F, y);
   line += 0.004F * smoothNoise(Point{p.x() * 60, y * 60, 0}, seed_ + 9);
   d = smoothMeet(d, (line - p.z()) * 0.75F, 0.012F);
   if (tail) {

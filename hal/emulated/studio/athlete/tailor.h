@@ -30,6 +30,7 @@ class Tailor {
   const Anatomy& anatomy_;
   HairCut hair_cut_;
   std::uint32_t seed_;
+  float cloth_m_;  ///< as thick as the polygons can show
   std::vector<Loft> shirt_;
   std::vector<Loft> sleeve_;
   std::vector<Loft> seat_;
