@@ -7,6 +7,7 @@
 
 #include "appliance/camera_watch.h"
 #include "appliance/capture/genlock_text.h"
+#include "appliance/depth/depth_settings.h"
 #include "appliance/device_settings.h"
 #include "appliance/network/network_plan.h"
 #include "appliance/process_facts.h"

@@ -68,17 +68,6 @@ std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
   return ladder;
 }
 
-hal::DepthSensorSettings depthSensorSettings(const Config::DepthSensor& config) {
-  return {.source = config.source,
-          .drivers = config.drivers,
-          .width_px = config.width_px,
-          .height_px = config.height_px,
-          .rate_hz = config.rate_hz,
-          .colour = config.colour,
-          .latency = microseconds(config.latency_ms * 1e3),
-          .repeat = config.repeat};
-}
-
 rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how) {
   return {
       .name = std::move(name), .policy = how.policy, .priority = how.priority, .cpus = how.cpus};

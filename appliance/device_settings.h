@@ -6,7 +6,6 @@
 
 #include "appliance/config/config.h"
 #include "appliance/geometry/rig.h"
-#include "hal/backends.h"
 #include "hal/camera_profile.h"
 #include "rt/clock.h"
 #include "rt/thread.h"
@@ -26,8 +25,6 @@ namespace appliance {
                                            std::size_t index);
 
 [[nodiscard]] std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config);
-
-[[nodiscard]] hal::DepthSensorSettings depthSensorSettings(const Config::DepthSensor& config);
 
 [[nodiscard]] rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how);
 

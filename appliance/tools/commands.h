@@ -20,6 +20,7 @@ struct ControlPlace {
 void addControlCommands(CLI::App& kagami, const ControlPlace& place);
 void addConfigCommand(CLI::App& kagami);
 void addPlanCommand(CLI::App& kagami);
+void addDepthCommand(CLI::App& kagami);
 void addReportCommand(CLI::App& kagami);
 void addTraceCommand(CLI::App& kagami);
 

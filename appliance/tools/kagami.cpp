@@ -101,6 +101,7 @@ int main(int argc, char** argv) {
   appliance::addControlCommands(kagami, place);
   appliance::addConfigCommand(kagami);
   appliance::addPlanCommand(kagami);
+  appliance::addDepthCommand(kagami);
   appliance::addTraceCommand(kagami);
   appliance::addReportCommand(kagami);
   appliance::addFilmCommand(kagami);

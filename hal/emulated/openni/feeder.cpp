@@ -55,6 +55,7 @@ int feed(const Options& options) {
     std::fprintf(stderr, "kagami-depth-feeder: %s cannot be written\n", options.lamp_log.c_str());
     return 1;
   }
+  if (log != nullptr) (void)std::setvbuf(log, nullptr, _IOLBF, BUFSIZ);  // read while it grows
   const emulator::PracticeRoom room(options.format);
   const rt::Nanoseconds period(static_cast<std::int64_t>(1e9 / options.format.rate_hz));
   const rt::Timestamp start = rt::now() + period;
