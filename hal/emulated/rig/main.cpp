@@ -1,5 +1,6 @@
 /// kagami-emulator: the far side of the camera and trigger wires on a machine without them.
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -14,6 +15,9 @@
 #include "hal/emulated/rig/socket.h"
 #include "hal/emulated/rig/stamp_scene.h"
 #include "hal/emulated/rig/stop_signals.h"
+#include "hal/emulated/studio/progress_bar.h"
+#include "hal/emulated/studio/studio_scene.h"
+#include "hal/emulated/studio/truth.h"
 
 namespace {
 
@@ -27,6 +31,8 @@ struct Arguments {
   std::string stats;
   std::string rig_out;
   emulator::RigOptions rig;
+  emulator::studio::StudioOptions studio;
+  std::string truth;
   std::string convert_kind;
   std::string convert_from;
   std::string convert_to;
@@ -52,12 +58,13 @@ std::expected<emulator::SizePx, std::string> parseSize(const std::string& text) 
 }
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--cameras", a.cameras, "cameras in the stamp scene; a recording has its own")
+  app.add_option("--cameras", a.cameras,
+                 "cameras in the stamp scene or the studio; a recording has its own")
       ->check(CLI::Range(1, 250))
       ->capture_default_str();
   app.add_option("--size", a.size, "their size in pixels")->capture_default_str();
   app.add_option("--scene", a.scene,
-                 "what they see: stamp, or a folder with rig.toml and recordings")
+                 "what they see: stamp, studio, or a folder with rig.toml and recordings")
       ->capture_default_str();
   app.add_option("--first-address", a.first_address, "camera i answers on this address + i")
       ->capture_default_str();
@@ -77,7 +84,20 @@ void declare(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--fault-log", a.rig.fault_log, "CSV file: every fault and what came of it");
   app.add_option("--stats", a.stats, "JSON file at exit: counts, lateness, validity");
-  app.add_option("--rig-out", a.rig_out, "write the stamp scene's rig.toml there");
+  app.add_option("--rig-out", a.rig_out, "write rig.toml of the stamp scene or the studio there");
+  app.add_option("--studio-seed", a.studio.seed, "another hall, other people, other throws")
+      ->capture_default_str();
+  app.add_option("--studio-seconds", a.studio.play_s, "length of the studio's play")
+      ->check(CLI::Range(0.5, 600.0))
+      ->capture_default_str();
+  app.add_option("--studio-cache", a.studio.cache,
+                 "folder that keeps what was drawn; default: kagami/studio in the user's cache");
+  app.add_option("--studio-cache-gib", a.studio.cache_gib, "limit of that folder; 0: keeps nothing")
+      ->check(CLI::Range(0.0, 10'000.0))
+      ->capture_default_str();
+  app.add_option("--studio-grow", a.studio.grow, "go on drawing the play while it runs")
+      ->capture_default_str();
+  app.add_option("--studio-truth", a.truth, "folder for the studio's ground truth");
   app.add_option("--realtime-priority", a.rig.realtime_priority, "SCHED_FIFO priority; 0: none")
       ->check(CLI::Range(0, 99))
       ->capture_default_str();
@@ -100,10 +120,51 @@ void declare(CLI::App& app, Arguments& a) {
 
 using ScenePointer = std::unique_ptr<emulator::Scene>;
 
+std::filesystem::path userCache() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
+    return cache;
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home != nullptr && *home != 0 ? home : "/var/tmp") / ".cache";
+}
+
+std::expected<ScenePointer, std::string> openStudio(const Arguments& a) {
+  const auto size = parseSize(a.size);
+  if (!size) return std::unexpected(size.error());
+  emulator::studio::StudioOptions options = a.studio;
+  options.cameras = a.cameras;
+  options.size = *size;
+  if (options.cache.empty()) options.cache = userCache() / "kagami" / "studio";
+  emulator::studio::ProgressBar bar;
+  auto scene = emulator::studio::StudioScene::make(
+      options, [&bar](double share, const char* what) { bar.show(share, what); });
+  if (!scene) return std::unexpected(scene.error());
+  if (!a.rig_out.empty()) {
+    if (auto written = emulator::writeRigFile(a.rig_out, (*scene)->rig()); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  if (!a.truth.empty()) {
+    if (auto written = emulator::studio::writeTruth(a.truth, options); !written) {
+      return std::unexpected(written.error());
+    }
+  }
+  return std::move(*scene);
+}
+
+/// Which trigger showed what can only be told afterwards: while it grows, the play begins anew
+/// earlier.
+std::expected<void, std::string> closeStudio(const Arguments& a, const emulator::Scene& scene) {
+  const auto* studio = dynamic_cast<const emulator::studio::StudioScene*>(&scene);
+  if (studio == nullptr || a.truth.empty()) return {};
+  return emulator::studio::writeRounds(a.truth, studio->rounds());
+}
+
 std::expected<ScenePointer, std::string> openScene(const Arguments& a) {
+  if (a.scene == "studio") return openStudio(a);
+  if (!a.truth.empty()) return std::unexpected("--studio-truth is for --scene studio");
   if (a.scene != "stamp") {
     if (!a.rig_out.empty()) {
-      return std::unexpected("--rig-out is for the stamp scene; this one has its own rig.toml");
+      return std::unexpected("--rig-out is for stamp and studio; this scene has its own rig.toml");
     }
     auto recording = emulator::RecordingScene::open(a.scene);
     if (!recording) return std::unexpected(recording.error());
@@ -137,6 +198,7 @@ int serve(Arguments& a) {
   std::puts("ready");
   std::fflush(stdout);
   if (auto served = rig->run(); !served) return fail(served.error());
+  if (auto closed = closeStudio(a, **scene); !closed) return fail(closed.error());
 
   const auto reason =
       emulator::invalidReason(rig->counters(), rig->lateness(), rig->triggerPeriod());

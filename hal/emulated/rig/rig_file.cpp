@@ -65,7 +65,7 @@ std::string toToml(const RigModel& rig) {
       text << (row == 0 ? "" : ",\n             ")
            << list(std::array{r[0], r[1], r[2], c.translation_m[row]});
     }
-    text << "]\ngain_rgb = [1.0, 1.0, 1.0]\n";
+    text << "]\ngain_rgb = " << list(c.gain_rgb) << "\n";
   }
   return text.str();
 }

@@ -21,6 +21,7 @@ struct CameraModel {
   std::array<double, 5> distortion{};
   std::array<std::array<double, 3>, 3> rotation{};
   std::array<double, 3> translation_m{};
+  std::array<double, 3> gain_rgb{1, 1, 1};  ///< colour gains, linear light
 };
 
 /// What stands where: the rig frame is metric, +Z up, its origin on the floor.

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "hal/emulated/studio/athlete/body.h"
+#include "hal/emulated/studio/backdrop.h"
+#include "hal/emulated/studio/gl.h"
+#include "hal/emulated/studio/lamps.h"
+#include "hal/emulated/studio/light_bake.h"
+#include "hal/emulated/studio/moment.h"
+#include "hal/emulated/studio/posed_mesh.h"
+
+namespace emulator::studio {
+
+/// One of those who may be in the picture: the surface to be seen, and a rougher one for shadows.
+struct CastMember {
+  Body surface;
+  Body shadow;
+};
+
+/// A rectangle of one camera's picture with the people in it.
+struct PeoplePicture {
+  cv::Rect area;
+  cv::Mat roots;  ///< CV_8UC4: square roots of red, green, blue as in Backdrop::rgb, times
+                  ///< coverage, then coverage; 255 is 1
+};
+
+/// How much of its light the floor keeps among the people, seen from above.
+struct FloorShade {
+  static constexpr int kColumns = 280;
+  static constexpr int kRows = 260;
+  static constexpr float kLowX_m = -7.0f;
+  static constexpr float kLowY_m = -5.5f;
+  static constexpr float kStep_m = 0.05f;
+  cv::Mat share;  ///< CV_32F, row 0 at kLowY_m; 1 where nobody is
+};
+
+/// Draws people: what all cameras share of a moment once (pose, shadows, light on every vertex),
+/// then each camera's view of it.
+///
+/// Threads  The thread of the current GlContext.
+class PeopleRenderer {
+ public:
+  PeopleRenderer(const std::vector<CastMember>& cast, const std::vector<Lamp>& lamps,
+                 const LightProbes& probes, const cv::Mat& floor_light);
+
+  /// The empty hall's depth in each camera, so that what stands before people hides them.
+  void addCamera(const StudioCamera& camera, const std::vector<float>& depth_m);
+
+  void setMoment(const Moment& moment);
+  [[nodiscard]] const FloorShade& floorShade() const { return floor_shade_; }
+  [[nodiscard]] std::vector<PeoplePicture> draw(std::size_t camera);
+  /// Of people and hall, metres along the optical axis, the whole picture. CV_32F.
+  [[nodiscard]] cv::Mat drawDepth(std::size_t camera);
+
+ private:
+  struct Mesh {
+    GlVertexArray draw;
+    GlVertexArray light;
+    GlBuffer posed;
+    GlBuffer fallen;
+    GlBuffer paint;
+    GlBuffer indices;
+    GLsizei count = 0;
+    GLsizei vertices = 0;
+  };
+  struct View {
+    StudioCamera camera;
+    GlTexture depth;
+  };
+  struct Shown {
+    std::size_t body = 0;
+    PosedMesh mesh;
+    PosedMesh shadow;
+  };
+
+  static Mesh upload(const Body& body);
+  void paint(const Mesh& mesh, const Body& body) const;
+  void drawShadows(double second);
+  void lightBodies(double second);
+  void shadeFloor(double second);
+  void setLamps(const GlProgram& program, double second) const;
+  void setCamera(const GlProgram& program, const StudioCamera& camera) const;
+  [[nodiscard]] std::vector<cv::Rect> areasOf(const StudioCamera& camera) const;
+  void drawStep(const View& view, const cv::Rect& area, float instant) const;
+  void makeTargets(int width, int height);
+
+  const std::vector<CastMember>& cast_;
+  const std::vector<Lamp>& lamps_;
+  const LightProbes& probes_;
+  std::vector<Mesh> surfaces_;
+  std::vector<Mesh> shadows_;
+  std::vector<View> views_;
+  std::vector<Shown> shown_;
+  FloorShade floor_shade_;
+
+  GlProgram shadow_program_;
+  GlProgram light_program_;
+  GlProgram paint_program_;
+  GlProgram floor_program_;
+  GlProgram body_program_;
+  GlProgram depth_program_;
+  GlTexture shadow_maps_;
+  GlFramebuffer shadow_framebuffer_;
+  GlTexture floor_light_;
+  GlTexture floor_map_;
+  GlFramebuffer floor_framebuffer_;
+  GlVertexArray no_vertices_;
+  cv::Size target_size_;
+  GlTexture target_colour_;
+  GlRenderbuffer target_depth_;
+  GlFramebuffer target_;
+};
+
+}  // namespace emulator::studio

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/emulated/studio/patch.h"
+#include "hal/emulated/studio/studio_options.h"
+#include "hal/emulated/studio/studio_rig.h"
+
+namespace emulator::studio {
+
+/// One moment as all cameras see it.
+using MomentPatches = std::vector<Patch>;
+
+/// The scene's pictures: the empty hall of every camera, and one moment after the other over it,
+/// taken from the cache or drawn by threads of the lowest priority.
+///
+/// Threads  Pictures are read by one thread, while our own draw further ones.
+/// Memory   Up to 8 MB for each moment of 20 cameras, usually 3; refused beyond half of what is
+/// free. Errors   Needs EGL and OpenGL ES 3.
+class Play {
+ public:
+  /// How far the preparation is, 0..1, and what is being done.
+  using Progress = std::function<void(double, const char*)>;
+
+  /// Returns as soon as there is enough to begin with.
+  [[nodiscard]] static std::expected<std::unique_ptr<Play>, std::string> begin(
+      const StudioOptions& options, const Progress& progress);
+  ~Play();
+
+  [[nodiscard]] const StudioRig& rig() const;
+  /// Moments of the whole scene.
+  [[nodiscard]] std::uint32_t momentCount() const;
+  /// The first so many can be shown.
+  [[nodiscard]] std::uint32_t readyCount() const;
+  [[nodiscard]] const Patch& patch(std::uint32_t moment, std::uint32_t camera) const;
+  /// A camera's empty hall; made anew by every call.
+  [[nodiscard]] std::vector<std::uint8_t> background(std::uint32_t camera,
+                                                     std::uint32_t variant) const;
+  /// Until so many moments are ready, or drawing has ended. For tests and tools.
+  void waitFor(std::uint32_t moments) const;
+
+ private:
+  struct State;
+  explicit Play(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace emulator::studio

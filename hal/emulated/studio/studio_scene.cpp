@@ -1,0 +1,96 @@
+#include "hal/emulated/studio/studio_scene.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "hal/emulated/studio/sensor_view.h"
+
+namespace emulator::studio {
+namespace {
+constexpr std::size_t kRemembered = 10'000;
+}  // namespace
+
+std::expected<std::unique_ptr<StudioScene>, std::string> StudioScene::make(
+    const StudioOptions& options, const Play::Progress& progress) {
+  auto play = Play::begin(options, progress);
+  if (!play) return std::unexpected(play.error());
+  const std::size_t bytes = std::size_t{options.cameras} * (kVariants + kFrameHistory) *
+                            options.size.width * options.size.height;
+  auto memory = rt::LockedArena::create(bytes);
+  if (!memory) {
+    return std::unexpected("the studio's pictures need " + std::to_string(bytes / 1'000'000) +
+                           " MB of memory that are not to be had: fewer or smaller cameras");
+  }
+  return std::unique_ptr<StudioScene>(new StudioScene(std::move(*play), std::move(*memory)));
+}
+
+StudioScene::StudioScene(std::unique_ptr<Play> play, rt::LockedArena memory)
+    : play_(std::move(play)),
+      size_(play_->rig().cameras.front().model.image_size),
+      memory_(std::move(memory)),
+      backgrounds_(cameraCount()),
+      slots_(cameraCount()) {
+  const std::span<std::byte> bytes = memory_.bytes();
+  std::span rest(reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  const auto cut = [&] {
+    const auto piece = rest.first(std::size_t{size_.width} * size_.height);
+    rest = rest.subspan(piece.size());
+    return piece;
+  };
+  for (std::uint32_t camera = 0; camera < cameraCount(); ++camera) {
+    for (std::uint32_t variant = 0; variant < kVariants; ++variant) {
+      backgrounds_[camera][variant] = cut();
+      std::ranges::copy(play_->background(camera, variant), backgrounds_[camera][variant].begin());
+    }
+    for (std::uint32_t slot = 0; slot < kFrameHistory; ++slot) {
+      // The variant that the slot will meet first, if no trigger is missed.
+      Slot& s = slots_[camera][slot];
+      s.picture = cut();
+      s.variant = slot % kVariants;
+      std::ranges::copy(backgrounds_[camera][s.variant], s.picture.begin());
+    }
+  }
+  rounds_.reserve(kRemembered);
+  round_ = {.first_trigger = 1, .moments = play_->readyCount() / kVariants * kVariants};
+  rounds_.push_back(round_);
+}
+
+std::uint32_t StudioScene::cameraCount() const {
+  return static_cast<std::uint32_t>(play_->rig().cameras.size());
+}
+
+SizePx StudioScene::sensorSize(std::uint32_t /*camera*/) const {
+  return size_;
+}
+
+std::string StudioScene::cameraName(std::uint32_t camera) const {
+  return play_->rig().cameras[camera].model.name;
+}
+
+std::uint32_t StudioScene::momentOf(std::uint64_t trigger) {
+  // A frame that no trigger asked for, or one of a round that is over, shows something; so be it.
+  if (trigger < round_.first_trigger) return static_cast<std::uint32_t>(trigger % round_.moments);
+  const std::uint64_t passed = trigger - round_.first_trigger;
+  if (passed < round_.moments) return static_cast<std::uint32_t>(passed);
+  round_ = {.first_trigger = trigger - passed % round_.moments,
+            .moments = play_->readyCount() / kVariants * kVariants};
+  if (rounds_.size() < kRemembered) rounds_.push_back(round_);
+  return static_cast<std::uint32_t>(trigger - round_.first_trigger);
+}
+
+gvsp::Picture StudioScene::expose(std::uint32_t camera, std::uint64_t trigger, std::uint32_t slot) {
+  Slot& s = slots_[camera][slot];
+  const std::uint32_t moment = momentOf(trigger);
+  const std::uint32_t variant = moment % kVariants;
+  if (s.variant != variant) {  // a trigger was missed: rare enough to copy everything
+    std::ranges::copy(backgrounds_[camera][variant], s.picture.begin());
+    s.variant = variant;
+  } else if (s.patch != nullptr) {
+    s.patch->takeOutOf(s.picture, backgrounds_[camera][variant]);
+  }
+  s.patch = &play_->patch(moment, camera);
+  s.patch->putInto(s.picture);
+  return {{s.picture, {}, {}}};
+}
+
+}  // namespace emulator::studio
