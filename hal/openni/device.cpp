@@ -62,6 +62,18 @@ class GoneListener final : public ni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> gone_{false};
 };
 
+/// OpenNI2 tells fields of view and takes the optical axis for the middle.
+DepthLens lensOf(const ni::VideoStream& stream) {
+  const auto focal_px = [](std::uint32_t size, float field_of_view) {
+    return 0.5 * size / std::tan(0.5 * static_cast<double>(field_of_view));
+  };
+  const VideoMode mode = modeOf(stream.getVideoMode());
+  return {.focal_x_px = focal_px(mode.width_px, stream.getHorizontalFieldOfView()),
+          .focal_y_px = focal_px(mode.height_px, stream.getVerticalFieldOfView()),
+          .centre_x_px = 0.5 * (mode.width_px - 1.0),
+          .centre_y_px = 0.5 * (mode.height_px - 1.0)};
+}
+
 /// The modes of one sensor that have our pixel format, and the streams' own objects for them.
 struct Modes {
   std::vector<VideoMode> ours;
@@ -215,13 +227,7 @@ std::expected<void, std::string> Device::Implementation::openDepth(const DeviceR
     return std::unexpected("its depth is not in millimetres: choose another sensor or recording");
   facts.width_px = modeOf(mode).width_px;
   facts.height_px = modeOf(mode).height_px;
-  const auto focal_px = [](std::uint32_t size, float field_of_view) {
-    return 0.5 * size / std::tan(0.5 * static_cast<double>(field_of_view));
-  };
-  facts.lens = {.focal_x_px = focal_px(facts.width_px, depth.getHorizontalFieldOfView()),
-                .focal_y_px = focal_px(facts.height_px, depth.getVerticalFieldOfView()),
-                .centre_x_px = 0.5 * (facts.width_px - 1.0),
-                .centre_y_px = 0.5 * (facts.height_px - 1.0)};
+  facts.lens = lensOf(depth);
   const std::uint32_t rate_hz = std::max(1U, modeOf(mode).rate_hz);
   pairs.emplace(500'000 / rate_hz);
   return {};
@@ -257,7 +263,7 @@ void Device::Implementation::settle() {
     ni::PlaybackControl* play = device.getPlaybackControl();
     play->setSpeed(-1);  // the next picture when we ask, never by the clock
     play->setRepeatEnabled(false);
-    return;
+    return;  // registered or not, as it was recorded
   }
   for (ni::VideoStream* stream : {&depth, &colour})
     if (stream->isValid()) stream->setMirroringEnabled(false);
@@ -266,6 +272,11 @@ void Device::Implementation::settle() {
       device.setImageRegistrationMode(ni::IMAGE_REGISTRATION_DEPTH_TO_COLOR) != ni::STATUS_OK) {
     facts.remarks.emplace_back(
         "its driver does not register depth to colour: both differ by some pixels");
+  }
+  // Registered depth is seen through the colour camera's lens.
+  if (device.getImageRegistrationMode() == ni::IMAGE_REGISTRATION_DEPTH_TO_COLOR &&
+      colour.getHorizontalFieldOfView() > 0 && colour.getVerticalFieldOfView() > 0) {
+    facts.lens = lensOf(colour);
   }
   device.setDepthColorSyncEnabled(true);  // not every driver can: the pairs are made by stamps
 }
