@@ -24,7 +24,10 @@ double Curve::slope(std::size_t i) const {
   if (rise_before * rise_after <= 0) return 0;  // a turning point
   const double w1 = 2 * after + before;
   const double w2 = after + 2 * before;
-  return (w1 + w2) / (w1 / rise_before + w2 / rise_after);
+  const double mean = (w1 + w2) / (w1 / rise_before + w2 / rise_after);
+  // A quintic without acceleration at its ends is monotonic up to twice the mean slope.
+  const double steepest = 2 * std::min(std::abs(rise_before), std::abs(rise_after));
+  return std::clamp(mean, -steepest, steepest);
 }
 
 double Curve::at(double t) const {

@@ -28,7 +28,8 @@ FootPosture FootScore::at(double t) const {
   const Eigen::Vector2d from = i > 0 ? steps[i - 1].to : start;
   const double from_yaw = i > 0 ? steps[i - 1].yaw : start_yaw;
   const double x = (t - step.lift_off) / (step.touch_down - step.lift_off);
-  const double done = ease(x);
+  // Up before forwards, down after: a sole never rubs along the floor.
+  const double done = ease((x - 0.07) / 0.86);
   const Eigen::Vector2d place = from + (step.to - from) * done;
   foot.sole = {place.x(), place.y(), step.height_m * bump(x)};
   foot.yaw = from_yaw + (step.yaw - from_yaw) * done;
