@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
+#include <cstddef>
 #include <thread>
 #include <utility>
 
@@ -62,9 +62,8 @@ class Slots {
     *free = true;
     const auto slot = static_cast<std::uint32_t>(free - lent_.begin());
     std::byte* at = memory_ + slot * slot_bytes_;
-    std::memcpy(at, pair.depth_mm.data(), pair.depth_mm.size_bytes());
-    std::memcpy(at + pair.depth_mm.size_bytes(), pair.colour_rgb.data(),
-                pair.colour_rgb.size_bytes());
+    at = std::ranges::copy(std::as_bytes(pair.depth_mm), at).out;
+    std::ranges::copy(std::as_bytes(pair.colour_rgb), at);
     return slot;
   }
 
