@@ -54,7 +54,7 @@ class Stream final : public oni::driver::StreamBase {
         type == ONI_SENSOR_DEPTH ? ONI_PIXEL_FORMAT_DEPTH_1_MM : ONI_PIXEL_FORMAT_RGB888;
     mode_.resolutionX = static_cast<int>(format.width_px);
     mode_.resolutionY = static_cast<int>(format.height_px);
-    mode_.fps = static_cast<int>(format.rate_hz + 0.5);
+    mode_.fps = static_cast<int>(std::lround(format.rate_hz));
   }
 
   OniStatus start() override {
@@ -179,7 +179,7 @@ class Device final : public oni::driver::DeviceBase {
       of.pixelFormat = pixels;
       of.resolutionX = static_cast<int>(format.width_px);
       of.resolutionY = static_cast<int>(format.height_px);
-      of.fps = static_cast<int>(format.rate_hz + 0.5);
+      of.fps = static_cast<int>(std::lround(format.rate_hz));
       return of;
     };
     modes_ = {mode(ONI_PIXEL_FORMAT_DEPTH_1_MM), mode(ONI_PIXEL_FORMAT_RGB888)};

@@ -120,10 +120,10 @@ std::array<double, 3> PracticeRoom::chest(double time_s) {
 PracticeRoom::PracticeRoom(const RgbdFormat& format)
     : format_(format), depth_m_(format.pixels()), rgb_(3 * format.pixels()) {
   for (std::size_t i = 0; i < format.pixels(); ++i) {
-    const double x =
-        (static_cast<double>(i % format.width_px) - format.centre_x_px) / format.focal_px;
-    const double y =
-        (static_cast<double>(i / format.width_px) - format.centre_y_px) / format.focal_px;
+    const std::size_t column = i % format.width_px;
+    const std::size_t row = i / format.width_px;
+    const double x = (static_cast<double>(column) - format.centre_x_px) / format.focal_px;
+    const double y = (static_cast<double>(row) - format.centre_y_px) / format.focal_px;
     // Where the pixel's ray meets the nearest of the planes around us.
     const double floor_m = y > 1e-6 ? kEye_m / y : 1e9;
     const double ceiling_m = y < -1e-6 ? -kCeiling_m / y : 1e9;
