@@ -64,6 +64,24 @@ bool plausible(const RgbdFormat& format) {
          format.rate_hz <= 1000 && format.focal_px > 0;
 }
 
+/// Copies what the writer may be overwriting: every load is an acquire, so that the look at the
+/// slot's number that follows is not done before them.
+void copyShared(void* to, const std::byte* from, std::size_t bytes) {
+  using Word = std::uint32_t;
+  auto* out = static_cast<std::byte*>(to);
+  auto* in = const_cast<std::byte*>(from);  // atomic_ref only reads it
+  std::size_t done = 0;
+  for (; done + sizeof(Word) <= bytes; done += sizeof(Word)) {
+    const std::atomic_ref<Word> word(*reinterpret_cast<Word*>(in + done));
+    const Word value = word.load(std::memory_order_acquire);
+    std::memcpy(out + done, &value, sizeof value);
+  }
+  for (; done < bytes; ++done) {
+    const std::atomic_ref<std::byte> last(in[done]);
+    out[done] = last.load(std::memory_order_acquire);
+  }
+}
+
 }  // namespace
 
 std::string depthRingPath() {
@@ -146,7 +164,7 @@ std::uint64_t DepthRingWriter::publish(rt::Timestamp exposure) {
   if (mapping_->drawing != number_ + 1) (void)begin();
   number_ = mapping_->drawing;
   DepthRingHead::Slot& slot = mapping_->slotOf(number_);
-  slot.exposure_ns = rt::toNs(exposure);
+  slot.exposure_ns.store(rt::toNs(exposure), std::memory_order_relaxed);
   slot.number.store(number_, std::memory_order_release);
   head.newest.store(number_, std::memory_order_release);
   head.bell.fetch_add(1, std::memory_order_release);
@@ -211,8 +229,7 @@ void DepthRingReader::waitAfter(std::uint64_t number, rt::Nanoseconds timeout) c
 std::optional<DepthRingReader::Stamp> DepthRingReader::stamp(std::uint64_t number) const {
   const DepthRingHead::Slot& slot = mapping_->slotOf(number);
   if (number == 0 || slot.number.load(std::memory_order_acquire) != number) return std::nullopt;
-  const std::int64_t exposure_ns = slot.exposure_ns;
-  std::atomic_thread_fence(std::memory_order_acquire);
+  const std::int64_t exposure_ns = slot.exposure_ns.load(std::memory_order_acquire);
   if (slot.number.load(std::memory_order_relaxed) != number) return std::nullopt;
   return Stamp{number, rt::fromNs(exposure_ns)};
 }
@@ -222,12 +239,11 @@ bool DepthRingReader::read(std::uint64_t number, std::span<float> depth_m,
   const DepthRingHead& head = mapping_->head();
   if (!stamp(number)) return false;
   const std::byte* at = mapping_->slotAt(number);
-  std::memcpy(depth_m.data(), at, std::min(depth_m.size_bytes(), depthBytes(head.format)));
+  copyShared(depth_m.data(), at, std::min(depth_m.size_bytes(), depthBytes(head.format)));
   if (head.format.colour) {
-    std::memcpy(colour_rgb.data(), at + depthBytes(head.format),
-                std::min(colour_rgb.size_bytes(), head.format.pixels() * 3));
+    copyShared(colour_rgb.data(), at + depthBytes(head.format),
+               std::min(colour_rgb.size_bytes(), head.format.pixels() * 3));
   }
-  std::atomic_thread_fence(std::memory_order_acquire);
   return stamp(number).has_value();
 }
 

@@ -24,7 +24,7 @@ struct DepthRingHead {
 
   struct Slot {
     std::atomic<std::uint64_t> number;  ///< 0 while it is drawn
-    std::int64_t exposure_ns;
+    std::atomic<std::int64_t> exposure_ns;
   };
   std::array<Slot, DepthRingWriter::kSlots> slot;
 };
