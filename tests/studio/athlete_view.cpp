@@ -1,7 +1,9 @@
 // Draws the athlete from chosen sides, for people to look at:
 //   athlete_view OUT.png [key=value ...]
 // Keys: seed, sex=m|f, build, hair=short|full|tail, yaw (degrees, several with commas),
-// from, height, distance (m), focal (px), size (px), t (s, several with commas), pose=rest.
+// from, height, distance (m), focal (px), size (px), t (s, several with commas; rest), action,
+// hand=l|r, follow=1 (the person in the middle), joints (file for the pixels of the 17 joints, a
+// line a view).
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -256,6 +258,8 @@ int main(int argc, char** argv) {
   }
 
   std::vector<cv::Mat> pictures;
+  std::FILE* joints =
+      options["joints"].empty() ? nullptr : std::fopen(options["joints"].c_str(), "w");
   const bool at_rest = options["t"] == "rest";
   const Body ball = emulator::studio::makeBall();
   for (const float t : at_rest ? std::vector<float>{0} : numbers(options["t"]))
@@ -306,7 +310,17 @@ int main(int argc, char** argv) {
       cv::flip(picture, picture, 0);
       cv::resize(picture, picture, cv::Size(size, size), 0, 0, cv::INTER_AREA);
       pictures.push_back(picture);
+      if (joints != nullptr && !at_rest) {
+        for (const auto& joint : pose.joints) {
+          const Eigen::Vector4f clip = view * joint.cast<float>().homogeneous();
+          std::fprintf(joints, "%.2f %.2f ",
+                       static_cast<double>((clip.x() / clip.w() + 1) * number("size") / 2),
+                       static_cast<double>((1 - clip.y() / clip.w()) * number("size") / 2));
+        }
+        std::fprintf(joints, "\n");
+      }
     }
+  if (joints != nullptr) std::fclose(joints);
   const auto columns = static_cast<std::size_t>(number("columns"));
   std::vector<cv::Mat> lines;
   for (std::size_t i = 0; i < pictures.size(); i += columns) {

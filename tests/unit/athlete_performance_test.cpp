@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hal/emulated/studio/athlete/bystanders.h"
+#include "hal/emulated/studio/athlete/draw_shape.h"
 #include "hal/emulated/studio/athlete/performance.h"
 #include "hal/emulated/studio/athlete/skeleton.h"
 
@@ -217,20 +217,6 @@ TEST(Performance, VariesItsThrows) {
   const auto [lowest, highest] = std::ranges::minmax_element(throws, {}, &ThrowTruth::height);
   EXPECT_GT(fastest->speed - slowest->speed, 0.1);
   EXPECT_GT(highest->height - lowest->height, 0.5);
-}
-
-TEST(Bystanders, KeepAwayFromTheAthleteAndDiffer) {
-  const auto people = makeBystanders(5, 4, 0.4);
-  ASSERT_EQ(people.size(), 4U);
-  for (const auto& person : people) {
-    for (double t = 0; t < person.performance.duration(); t += 0.2) {
-      const auto pose = person.performance.at(t);
-      EXPECT_GT(hips(pose).head<2>().norm(), 1.2);
-      EXPECT_EQ(pose.ball_state, BallState::kNone);
-    }
-  }
-  EXPECT_NE(people[0].shape.height_m, people[1].shape.height_m);
-  EXPECT_TRUE(makeBystanders(5, 0).empty());
 }
 
 TEST(DrawShape, StaysWithinWhatPeopleAre) {

@@ -3,7 +3,7 @@
 #include <array>
 #include <thread>
 
-#include "hal/emulated/studio/athlete/bystanders.h"
+#include "hal/emulated/studio/athlete/draw_shape.h"
 #include "hal/emulated/studio/random.h"
 
 namespace emulator::studio {

@@ -72,7 +72,7 @@ vec3 athleteSkinColour(vec3 p) {
   float moles = athleteNoise(p * 95.0 + seed * 3.0);
   skin *= 1.0 - 0.30 * smoothstep(0.955, 0.99, moles);
   // Knees, elbows, knuckles and finger tips are redder.
-  float knee = 1.0 - smoothstep(0.03, 0.07, abs(p.z - 0.50));
+  float knee = (1.0 - smoothstep(0.01, 0.06, abs(p.z - 0.505))) * smoothstep(-0.01, 0.05, p.y);
   skin = mix(skin, skin * vec3(1.05, 0.82, 0.78), 0.6 * knee);
   float hand = smoothstep(0.70, 0.80, abs(p.x));
   skin = mix(skin, skin * vec3(1.08, 0.84, 0.80), 0.6 * hand);

@@ -84,7 +84,7 @@ Anatomy::Anatomy(const BodyShape& shape)
                               {1.0F, 0.056F, 0.046F, 0.062F}},
                              n));
 
-  const float jaw = female_ ? 0.93F : 1.0F;
+  const float jaw = female_ ? 0.87F : 1.0F;
   const std::vector<Section> face = {{0.000F, 0.022F * jaw, 0.030F, 0.030F, 0.052F},
                                      {0.075F, 0.037F * jaw, 0.041F, 0.048F, 0.048F},
                                      {0.165F, 0.047F * jaw, 0.048F, 0.060F, 0.042F},
@@ -140,12 +140,12 @@ Anatomy::Anatomy(const BodyShape& shape)
                              {0.20F, 0.083F, 0.088F, 0.088F},
                              {0.45F, 0.074F, 0.082F, 0.076F},
                              {0.70F, 0.063F, 0.068F, 0.064F},
-                             {0.88F, 0.055F, 0.056F, 0.055F},
-                             {1.00F, 0.053F, 0.055F, 0.052F}},
+                             {0.88F, 0.053F, 0.056F, 0.055F},
+                             {1.00F, 0.048F, 0.051F, 0.050F}},
                             thigh));
   leg_.emplace_back(joint(kShank), joint(kFoot), forward, 0.02F,
-                    thicker({{0.00F, 0.053F, 0.054F, 0.051F},
-                             {0.10F, 0.050F, 0.049F, 0.056F},
+                    thicker({{0.00F, 0.047F, 0.049F, 0.048F},
+                             {0.10F, 0.048F, 0.047F, 0.054F},
                              {0.28F, 0.055F, 0.047F, 0.071F},
                              {0.45F, 0.051F, 0.044F, 0.064F},
                              {0.65F, 0.041F, 0.038F, 0.047F},
@@ -242,7 +242,7 @@ float Anatomy::leg(const Point& p) const {
   float d = smoothUnion(leg_[0].distance(q), leg_[1].distance(q), 0.04F);
   // Kneecap, vastus above it on the inside and outside, the calf's inner head, ankle bones.
   d = smoothUnion(
-      d, ellipsoid(q, joint(kShank) + Point{0, 0.044F, 0.012F}, {0.026F, 0.018F, 0.032F}), 0.025F);
+      d, ellipsoid(q, joint(kShank) + Point{0, 0.042F, 0.012F}, {0.026F, 0.018F, 0.032F}), 0.025F);
   d = smoothUnion(
       d, ellipsoid(q, joint(kShank) + Point{-0.030F, 0.024F, 0.085F}, {0.030F, 0.034F, 0.060F}),
       0.035F);

@@ -38,9 +38,13 @@ float Anatomy::face(const Point& p) const {
 
   // Cheekbones, jaw corners, chin, brow.
   d = smoothUnion(d, ellipsoid(p, {0.043F, 0.054F, 1.660F}, {0.021F, 0.022F, 0.014F}), 0.026F);
-  d = smoothUnion(d, ellipsoid(p, {0.045F, 0.008F, 1.606F}, {0.012F * soft, 0.024F, 0.018F}),
-                  0.03F);
-  d = smoothUnion(d, ellipsoid(p, {0.036F, 0.046F, 1.632F}, {0.022F, 0.030F, 0.026F}), 0.03F);
+  d = smoothUnion(
+      d,
+      ellipsoid(p, {0.045F - 0.012F * (1 - soft), 0.008F, 1.606F}, {0.012F * soft, 0.024F, 0.018F}),
+      0.03F);
+  d = smoothUnion(
+      d, ellipsoid(p, {0.036F - 0.008F * (1 - soft), 0.046F, 1.632F}, {0.022F, 0.030F, 0.026F}),
+      0.03F);
   d = smoothUnion(d, ellipsoid(p, {0.008F, 0.083F, 1.583F}, {0.016F, 0.012F, 0.010F}), 0.018F);
   d = smoothUnion(
       d, ellipsoid(p, {0.028F, 0.0835F, 1.7035F}, {0.024F, 0.009F * soft + 0.002F, 0.0055F}),
@@ -92,7 +96,7 @@ float Anatomy::head(const Point& p) const {
   d = smoothUnion(d, neck_.front().distance(q), 0.022F);
   // Sternomastoid, and the larynx of a man.
   d = smoothUnion(
-      d, capsule(q, {0.060F, -0.012F, 1.640F}, {0.014F, 0.020F, 1.475F}, 0.012F, 0.009F), 0.022F);
+      d, capsule(q, {0.054F, -0.012F, 1.640F}, {0.014F, 0.020F, 1.475F}, 0.012F, 0.009F), 0.022F);
   if (!female_) {
     d = smoothUnion(d, ellipsoid(q, {0, 0.030F, 1.556F}, {0.009F, 0.009F, 0.014F}), 0.022F);
   }

@@ -109,7 +109,7 @@ Body makeBody(const BodyShape& shape) {
              {1.674F, 1.697F, 0.0022F}}));
   const auto skin_weights = skinInfluences(skin);
   const auto covered = [&](const Point& p) {
-    return tailor.shirt(p) < -0.008F || tailor.shorts(p) < -0.008F || tailor.shoe(p) < -0.006F ||
+    return tailor.shirt(p) < -0.0035F || tailor.shorts(p) < -0.0035F || tailor.shoe(p) < -0.006F ||
            tailor.sole(p) < -0.004F || tailor.sock(p) < -0.002F;
   };
   join(body, skin, skin_weights, Material::kSkin, covered);

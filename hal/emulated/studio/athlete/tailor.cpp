@@ -220,11 +220,11 @@ float Tailor::hair(const Point& p) const {
   d = smoothMeet(d, (line - p.z()) * 0.75F, 0.012F);
   if (tail) {
     const Point root{0, -0.112F, 1.715F};
-    const Point mid{0, -0.150F, 1.660F};
+    const Point mid{0, -0.142F, 1.655F};
     const Point end{0, -0.138F, 1.520F};
     const float sway = 0.0025F * smoothNoise(Point{p.x() * 110, y * 110, p.z() * 14}, seed_ + 5);
-    const float rope = smoothUnion(capsule(p, root, mid, 0.017F, 0.024F),
-                                   capsule(p, mid, end, 0.024F, 0.008F), 0.02F);
+    const float rope = smoothUnion(capsule(p, root, mid, 0.016F, 0.021F),
+                                   capsule(p, mid, end, 0.021F, 0.007F), 0.03F);
     d = smoothUnion(d, rope - sway, 0.012F);
   }
   return d;

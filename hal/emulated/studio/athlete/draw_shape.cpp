@@ -1,16 +1,13 @@
-#include "hal/emulated/studio/athlete/bystanders.h"
+#include "hal/emulated/studio/athlete/draw_shape.h"
 
 #include <algorithm>
 #include <array>
-
-#include <Eigen/Geometry>
 
 #include "hal/emulated/studio/random.h"
 
 namespace emulator::studio {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3f;
 
 Vector3f drawSkin(Random& random) {
@@ -64,36 +61,6 @@ BodyShape drawShape(std::uint64_t seed) {
   shape.number = 1 + static_cast<int>(random.next() % 98);
   shape.left_handed = random.unit() < 0.12;
   return shape;
-}
-
-std::vector<Bystander> makeBystanders(std::uint64_t seed, int count, double heading) {
-  Random random(seed ^ 0x0b57'a4de'25ULL);
-  std::vector<Bystander> people;
-  const Eigen::Rotation2Dd turn(heading);
-  for (int i = 0; i < std::clamp(count, 0, 6); ++i) {
-    PerformanceOptions options;
-    options.shape = drawShape(random.next());
-    options.shape.cell_scale = 1.6;
-    options.ball_radius_m = 0;
-    options.heading = heading + random.uniform(-2.5F, 2.5F);
-    // Behind, in front, behind, at the edge...
-    const bool front = i % 3 == 1;
-    const double y = front ? random.uniform(2.3F, 2.9F) : random.uniform(-4.2F, -3.2F);
-    const double from = random.uniform(-4.0F, -2.6F);
-    const double to = random.uniform(2.6F, 4.0F);
-    if (i % 3 == 2) {
-      options.actions = {Action::kStretch, Action::kStand, Action::kStand};
-      options.home = turn * Vector2d{i % 2 == 0 ? to : from, -2.4};
-    } else {
-      options.actions = {Action::kWalk, Action::kStand};
-      options.home = turn * Vector2d{i % 2 == 0 ? from : to, y};
-      options.route = {turn * Vector2d{from, y}, turn * Vector2d{0.5 * (from + to), y - 0.4},
-                       turn * Vector2d{to, y}, turn * Vector2d{to, y + (front ? 0.7 : -0.7)},
-                       turn * Vector2d{from, y + (front ? 0.6 : -0.6)}};
-    }
-    people.push_back({options.shape, Performance(random.next(), options)});
-  }
-  return people;
 }
 
 }  // namespace emulator::studio
