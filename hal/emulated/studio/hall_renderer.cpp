@@ -10,8 +10,8 @@
 namespace emulator::studio {
 namespace {
 
-constexpr double kOversampling = 2;
-constexpr double kMirrorScale = 0.5;  // a varnish mirrors softly
+constexpr double kOversampling = 1.6;
+constexpr double kMirrorScale = 0.35;  // a varnish mirrors softly
 constexpr float kNear_m = 0.3f;
 constexpr float kFar_m = 60;
 
@@ -111,7 +111,7 @@ void main() {
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
       float w = (x == 0 ? 2.0 : 1.0) * (y == 0 ? 2.0 : 1.0);
-      vec4 tap = texture(wide, (at + vec2(x, y) * 1.2) / picture_size);
+      vec4 tap = texture(wide, (at + vec2(x, y) * 1.0) / picture_size);
       sum += w * vec4(min(tap.rgb, vec3(4.0)), tap.a);
       weights += w;
     }

@@ -149,7 +149,7 @@ void main() {
     key += strength;
     hidden += gone / float(kLamps);
   }
-  float rest = max(all - key, 0.0) * min(1.6 * hidden, 0.9);
+  float rest = max(all - key, 0.0) * min(2.2 * hidden, 0.92);
   share = vec4(clamp(1.0 - (lost + rest) / max(all, 1e-3), 0.06, 1.0), 0.0, 0.0, 1.0);
 }
 )";

@@ -105,6 +105,7 @@ struct Play::State {
   std::atomic<std::size_t> backdrops_done = 0;
   std::atomic<bool> playing = false;
   std::atomic<bool> stop = false;
+  unsigned thread_count = 0;
   std::uint32_t working = 0;  // guarded by mutex
   std::mutex mutex;
   std::mutex cache_mutex;
@@ -157,7 +158,7 @@ void Play::State::prepareHall() {
 
 void Play::State::drawBackdrops(std::size_t worker) {
   std::optional<HallRenderer> renderer_of_hall;
-  for (std::size_t c = worker; c < views.size(); c += workers.capacity()) {
+  for (std::size_t c = worker; c < views.size(); c += thread_count) {
     if (!views[c] && !stop) {
       if (!renderer_of_hall) renderer_of_hall.emplace(hall, covers, grain, light.map);
       Backdrop backdrop = renderer_of_hall->draw(rig.cameras[c]);
@@ -285,6 +286,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     s.workers.reserve(threads);
     s.backdrops_drawn.emplace(threads);
+    s.thread_count = threads;
     s.working = threads;
     for (unsigned i = 0; i < threads; ++i) s.workers.emplace_back([&s, i] { s.work(i); });
 

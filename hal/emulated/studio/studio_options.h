@@ -13,7 +13,7 @@ struct StudioOptions {
   std::uint64_t seed = 1;
   double play_s = 24;           ///< length of the scene, which then begins anew
   double first_play_s = 3;      ///< enough to begin with; the rest is drawn meanwhile
-  double patience_s = 48;       ///< with less than that, if drawing it takes so long
+  double patience_s = 45;       ///< with less than that, if drawing it takes so long
   bool grow = true;             ///< go on drawing while playing
   std::filesystem::path cache;  ///< folder of all scenes; empty: none
   double cache_gib = 4;         ///< of all scenes together

@@ -1,0 +1,39 @@
+#include "hal/emulated/studio/shown.h"
+
+#include <array>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "hal/emulated/studio/sensor_view.h"
+
+namespace emulator::studio {
+
+cv::Mat rawPicture(const Play& play, std::uint32_t camera, std::uint32_t moment) {
+  const SizePx size = play.rig().cameras[camera].model.image_size;
+  std::vector<std::uint8_t> pixels = play.background(camera, moment % kVariants);
+  play.patch(moment, camera).putInto(pixels);
+  return cv::Mat(static_cast<int>(size.height), static_cast<int>(size.width), CV_8U, pixels.data())
+      .clone();
+}
+
+cv::Mat shownPicture(const Play& play, std::uint32_t camera, std::uint32_t moment) {
+  cv::Mat bgr;
+  cv::cvtColor(rawPicture(play, camera, moment), bgr,
+               cv::COLOR_BayerBG2BGR);  // OpenCV's name of BayerRG
+  const auto& gains = play.rig().cameras[camera].model.gain_rgb;
+  cv::Mat curves(1, 256, CV_8UC3);
+  for (int v = 0; v < 256; ++v) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double light = v / 255.0 * gains[2 - c];
+      const double shown =
+          light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+      curves.at<cv::Vec3b>(0, v)[static_cast<int>(c)] =
+          cv::saturate_cast<std::uint8_t>(255 * shown);
+    }
+  }
+  cv::LUT(bgr, curves, bgr);
+  return bgr;
+}
+
+}  // namespace emulator::studio
