@@ -1,6 +1,7 @@
 // A depth sensor through OpenNI2 and all that may be wrong with it: the emulated driver on one
 // side, the interface that the daemon uses on the other.
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -77,16 +78,17 @@ TEST(OpenniSensor, SaysWhenTheLightWasTaken) {
   const DepthFeed feed;
   const auto sensor = opened(live());
   ASSERT_TRUE(sensor);
+  rt::Nanoseconds least = 1h;  // from exposure to arrival: a busy machine's may exceed the sensor's
   for (int i = 0; i < 60; ++i) {
     const auto frame = sensor->waitFrame(20s);
     ASSERT_TRUE(frame) << sensor->status().message;
     const rt::Timestamp truth = feed.exposureOf(frame->number);
     ASSERT_NE(truth, rt::Timestamp{});
-    // Arrivals on a busy machine are late by any time; what is left of the latency is not.
-    if (i >= 30) {
-      EXPECT_LT(std::chrono::abs(frame->exposure - truth), 20ms);
-      EXPECT_GE(frame->frame_ready - truth, 40ms);
-    }
+    EXPECT_GE(frame->frame_ready - truth, 40ms);
+    least = std::min(least, frame->frame_ready - truth);
+    // What no arrival tells cannot be known; beyond that the stamps leave nothing open.
+    const rt::Nanoseconds unknowable = least - 40ms;
+    EXPECT_LT(std::chrono::abs(frame->exposure - truth - unknowable), 1ms);
   }
 }
 
