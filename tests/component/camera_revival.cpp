@@ -123,7 +123,9 @@ int measure(const Options& options) {
   test::ChildProcess rig({KAGAMI_EMULATOR, "--cameras", std::to_string(options.cameras), "--size",
                           options.size, "--first-address", kFirstAddress, "--wire-port", "3985",
                           "--fault-port", std::to_string(kFaultPort), "--rig-out",
-                          folder / "rig.toml", "--stats", folder / "stats.json"},
+                          folder / "rig.toml", "--stats", folder / "stats.json",
+                          // Hardware is never late for want of a processor.
+                          "--realtime-priority", "85"},
                          folder / "emulator.log");
   if (!rig.waitForOutput("ready", 60s)) return fail(rig.output());
   test::ChildProcess daemon({KAGAMID,        "--config",
@@ -133,6 +135,7 @@ int measure(const Options& options) {
                              "--set",        "cameras.packet_size_bytes=" + options.packet_size,  //
                              "--set",        "trigger.wire_port=3985",
                              "--set",        "trigger.rate_hz=" + options.rate,  //
+                             "--set",        "trigger.genlock=false",
                              "--set",        "history.sets=40",
                              "--set",        "display.refresh_hz=10",  //
                              "--set",        "control.bus=none",
