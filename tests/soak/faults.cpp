@@ -88,9 +88,14 @@ std::span<const FaultKind> faultKinds() {
   return kKinds;
 }
 
+const FaultKind* findFaultKind(std::string_view name) {
+  const auto* const found = std::ranges::find(kKinds, name, &FaultKind::name);
+  return found == kKinds.end() ? nullptr : found;
+}
+
 PlannedFault FaultPlan::next() {
   if (round_.empty()) {
-    for (const FaultKind& kind : kKinds) round_.push_back(&kind);
+    for (const FaultKind& kind : kinds_) round_.push_back(&kind);
     std::ranges::shuffle(round_, engine_);
   }
   const FaultKind* kind = round_.front();
