@@ -297,7 +297,8 @@ void Run::noteWhatIsBad(const Judgement& judgement) {
                         ": the frame stored as that of trigger " + std::to_string(frame.trigger) +
                         " was sent for another one");
   for (const FaultOutcome& one : judgement.faults) {
-    if (one.fault.kind->named && !one.fault.named)
+    const bool just_begun = one.fault.from + kStatusLag > stop_asked_at;
+    if (one.fault.kind->named && !one.fault.named && !just_begun)
       problems_.push_back("camera " + std::to_string(one.fault.camera + 1) + " (" +
                           std::string(one.fault.kind->name) + ") was never told as silent");
   }
