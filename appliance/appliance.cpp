@@ -9,7 +9,6 @@
 #include "appliance/capture/genlock_text.h"
 #include "appliance/depth/depth_settings.h"
 #include "appliance/device_settings.h"
-#include "appliance/network/network_plan.h"
 #include "appliance/process_facts.h"
 #include "appliance/trigger_wiring.h"
 #include "hal/backends.h"
@@ -26,9 +25,6 @@ constexpr std::size_t kLoopbackTrace = 2;
 constexpr std::size_t kFirstCameraTrace = 3;
 
 constexpr std::uint32_t kFewestSets = 8;
-
-// A camera that takes longer joins a rig that already runs.
-constexpr rt::Nanoseconds kCamerasSettleWithin = 10s;
 
 std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available) {
   char line[256];
@@ -163,17 +159,8 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
   const auto producer = [&](std::size_t index) {
     return trace_ ? &trace_->producer(index) : nullptr;
   };
-  const rt::Nanoseconds camera_delay =
-      microseconds(commonDelay_us(config_.cameras) + config_.cameras.exposure_us);
-  const CameraPace pace = config_.cameras.trigger_source == hal::kFreeRunning
-                              ? CameraPace::kFreeRunning
-                              : CameraPace::kTriggered;
-  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
-    collectors_.push_back(std::make_unique<Collector>(i, Association{period_, camera_delay, pace},
-                                                      history_->camera(i), board_,
-                                                      producer(kFirstCameraTrace + i)));
-  }
-  makeSupervisors();
+  cameras_ = std::make_unique<CameraArray>(config_, rig_, *history_, board_, trace_.get(),
+                                           kFirstCameraTrace);
   trigger_loop_ = std::make_unique<TriggerLoop>(
       TriggerTiming{.period = period_,
                     .pulse_width = microseconds(config_.trigger.pulse_width_us),
@@ -219,7 +206,7 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
     started =
         startThread(depth_thread_, "depth", {}, [this](auto stop) { depth_loop_->run(stop); });
   }
-  if (started) started = startCameras();
+  if (started) started = cameras_->start();
   if (started && loopback_loop_) {
     started = startThread(loopback_thread_, "loopback", {},
                           [this](auto stop) { loopback_loop_->run(stop); });
@@ -234,39 +221,6 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
     return started;
   }
   if (trace_) trace_->begin(runRecord(display));
-  return {};
-}
-
-void Appliance::makeSupervisors() {
-  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
-    const std::string& backend = config_.cameras.backend;
-    const hal::CameraProfile profile = profileOf(config_, rig_.cameras[i], i);
-    CameraDoor door{
-        .probe =
-            [backend, address = profile.address](rt::Nanoseconds timeout) {
-              return hal::probeCamera(backend, address, timeout);
-            },
-        .open =
-            [backend, profile,
-             receive = threadConfig(receiveThreadName(i), config_.realtime.receive)] {
-              return hal::openCamera(backend, profile, receive);
-            },
-        .name = profile.name,
-        .frame_packets = frameOnWire(std::uint64_t{profile.width_px} * profile.height_px,
-                                     profile.packet_size_bytes)
-                             .packets};
-    supervisors_.push_back(std::make_unique<CameraSupervisor>(std::move(door), *collectors_[i],
-                                                              history_->camera(i), board_.edges));
-  }
-}
-
-/// All at once; returns when every camera streams or is known not to.
-std::expected<void, std::string> Appliance::startCameras() {
-  for (std::size_t i = 0; i < supervisors_.size(); ++i) {
-    if (auto started = supervisors_[i]->start(i); !started) return started;
-  }
-  const rt::Timestamp patience = rt::now() + kCamerasSettleWithin;
-  for (const auto& supervisor : supervisors_) (void)supervisor->waitSettled(patience);
   return {};
 }
 
@@ -299,8 +253,7 @@ void Appliance::stopPipeline() {
     // Frames of the last triggers are still on the wire.
     std::this_thread::sleep_for(2 * period_);
   }
-  for (const auto& supervisor : supervisors_) supervisor->requestStop();
-  for (const auto& supervisor : supervisors_) supervisor->stop();
+  if (cameras_) cameras_->stop();
   loopback_thread_ = {};
   panel_thread_ = {};
   depth_thread_ = {};
@@ -365,38 +318,20 @@ Status Appliance::status() const {
     if (std::string trouble = depthTrouble(depth); !trouble.empty())
       status.degraded.push_back(std::move(trouble));
   }
-  for (const auto& supervisor : supervisors_) {
-    for (std::string& remark : supervisor->remarks()) status.degraded.push_back(std::move(remark));
-  }
+  for (std::string& remark : cameras_->remarks()) status.degraded.push_back(std::move(remark));
   status.genlock_text = genlockText(status.genlock, config_.trigger.rate_hz);
   if (config_.display.flicker_compensation) status.light_text = flickerText(render.flicker);
-  status.cameras = cameraStatuses();
-  for (const CameraStatus& camera : status.cameras) {
-    status.frames_lost += camera.frames_lost;
-    status.frames_incomplete += camera.frames_incomplete;
-  }
+  status.cameras = cameras_->statuses();
+  const CollectorCounts counts = cameras_->counts();
+  status.frames_lost = counts.missing;
+  status.frames_away = counts.away;
+  status.frames_incomplete = counts.incomplete + counts.wrong_size;
   return status;
-}
-
-std::vector<CameraStatus> Appliance::cameraStatuses() const {
-  const rt::Timestamp now = rt::now();
-  std::vector<CameraStatus> cameras;
-  for (std::uint32_t i = 0; i < history_->cameras(); ++i) {
-    const CollectorCounts counts = collectors_[i]->counts();
-    const CameraHealth health = supervisors_[i]->health();
-    cameras.push_back({.name = rig_.cameras[i].name,
-                       .state = health.state,
-                       .trouble = health.trouble,
-                       .reason = reasonOf(health, supervisors_[i]->silentFor(now)),
-                       .frames_lost = counts.missing,
-                       .frames_incomplete = counts.incomplete + counts.wrong_size});
-  }
-  return cameras;
 }
 
 RunRecord Appliance::runRecord(const hal::Display& display) const {
   std::vector<std::string> degraded = degraded_;
-  for (std::size_t i = 0; const CameraStatus& camera : cameraStatuses()) {
+  for (std::size_t i = 0; const CameraStatus& camera : cameras_->statuses()) {
     const std::string who = cameraTitle(i++, camera.name);
     if (!camera.reason.empty()) degraded.push_back(who + camera.reason);
   }
@@ -421,18 +356,16 @@ RunRecord Appliance::runRecord(const hal::Display& display) const {
 }
 
 SummaryRecord Appliance::summary() const {
-  SummaryRecord record{.clean_stop = true,
-                       .stop = rt::now(),
-                       .cpu_seconds = cpuSeconds(),
-                       .memory_bytes = residentBytes(),
-                       .pictures_skipped = render_loop_->status().skipped};
-  for (const auto& collector : collectors_) {
-    const CollectorCounts counts = collector->counts();
-    record.frames_lost += counts.missing;
-    record.frames_incomplete += counts.incomplete + counts.wrong_size;
-    record.frames_unattributed += counts.unattributed;
-  }
-  return record;
+  const CollectorCounts counts = cameras_->counts();
+  return {.clean_stop = true,
+          .stop = rt::now(),
+          .cpu_seconds = cpuSeconds(),
+          .memory_bytes = residentBytes(),
+          .frames_lost = counts.missing,
+          .frames_away = counts.away,
+          .frames_incomplete = counts.incomplete + counts.wrong_size,
+          .frames_unattributed = counts.unattributed,
+          .pictures_skipped = render_loop_->status().skipped};
 }
 
 }  // namespace appliance

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "appliance/capture/camera_supervisor.h"
+#include "appliance/camera_array.h"
 #include "appliance/capture/collector.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/loopback.h"
@@ -73,9 +73,6 @@ class Appliance final : public ControlSink, public StatusSource {
   [[nodiscard]] std::expected<void, std::string> startThread(rt::Thread& thread, const char* name,
                                                              const Config::ThreadSchedule& how,
                                                              std::function<void(std::stop_token)>);
-  void makeSupervisors();
-  [[nodiscard]] std::expected<void, std::string> startCameras();
-  [[nodiscard]] std::vector<CameraStatus> cameraStatuses() const;
   void stopPipeline();
   [[nodiscard]] RunRecord runRecord(const hal::Display& display) const;
   [[nodiscard]] SummaryRecord summary() const;
@@ -95,8 +92,7 @@ class Appliance final : public ControlSink, public StatusSource {
   std::unique_ptr<hal::EdgeInput> loopback_;  // none: no loop-back, or wired wrongly
   std::unique_ptr<hal::ButtonPanel> panel_;
   std::unique_ptr<TraceWriter> trace_;  // none: not traced
-  std::vector<std::unique_ptr<Collector>> collectors_;
-  std::vector<std::unique_ptr<CameraSupervisor>> supervisors_;
+  std::unique_ptr<CameraArray> cameras_;
   std::unique_ptr<TriggerLoop> trigger_loop_;
   std::unique_ptr<LoopbackLoop> loopback_loop_;
   std::unique_ptr<RenderLoop> render_loop_;

@@ -151,9 +151,10 @@ void KmsDisplay::onFlip(const kms::FlipEvent& event, rt::Timestamp now) {
   queue_.onFlip(event.serial, vblank.number, vblank.at);
   if (*vblanks_known_ && stamped) pacer_.onVblank(vblank.number, vblank.at);
   if (!drawing.fence.valid()) return;
-  // Only now is known when the GPU was done.
+  // Only now is known when the GPU was done. Drivers that were done at once hand out a fence that
+  // was signalled long ago, one for all.
   if (const auto drawn = kms::signalledAt(drawing.fence.get())) {
-    drawing.instants.warp_end = *drawn;
+    drawing.instants.warp_end = std::max(drawing.instants.warp_end, *drawn);
     pacer_.onPicture(drawing.instants);
   }
   drawing.fence = {};

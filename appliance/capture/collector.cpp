@@ -1,5 +1,8 @@
 #include "appliance/capture/collector.h"
 
+#include <algorithm>
+
+#include "appliance/capture/liveness.h"
 #include "rt/section.h"
 
 namespace appliance {
@@ -11,6 +14,20 @@ void count(std::atomic<std::uint64_t>& counter, std::uint64_t more = 1) RT_SAFE 
 }
 
 }  // namespace
+
+CollectorCounts& CollectorCounts::operator+=(const CollectorCounts& other) {
+  stored += other.stored;
+  missing += other.missing;
+  away += other.away;
+  incomplete += other.incomplete;
+  wrong_size += other.wrong_size;
+  no_edge += other.no_edge;
+  repeated += other.repeated;
+  unsettled += other.unsettled;
+  unattributed += other.unattributed;
+  last_stored = std::max(last_stored, other.last_stored);
+  return *this;
+}
 
 /// The trigger under which to store the frame; 0 after counting why not.
 std::uint64_t Collector::triggerOf(const hal::FrameArrival& arrival) RT_SAFE {
@@ -53,7 +70,9 @@ std::uint32_t Collector::onFrame(const hal::FrameArrival& arrival) RT_SAFE {
 
   std::uint32_t next = arrival.slot;  // a frame that is not stored is filled over
   if (trigger != 0) {
-    count(missing_, trigger - frames_.newest() - 1);
+    const std::uint64_t gap = trigger - frames_.newest() - 1;
+    count(restarted_ || gap >= kLostAfterTriggers ? away_ : missing_, gap);
+    restarted_ = false;
     next = frames_.store(arrival.slot, {.trigger = trigger,
                                         .frame_id = arrival.frame_id,
                                         .first_packet = arrival.first_packet,
@@ -85,6 +104,7 @@ CollectorCounts Collector::counts() const RT_SAFE {
   CollectorCounts counts{
       .stored = stored_.load(std::memory_order_relaxed),
       .missing = missing_.load(std::memory_order_relaxed),
+      .away = away_.load(std::memory_order_relaxed),
       .incomplete = incomplete_.load(std::memory_order_relaxed),
       .wrong_size = wrong_size_.load(std::memory_order_relaxed),
       .no_edge = no_edge_.load(std::memory_order_relaxed),

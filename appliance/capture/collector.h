@@ -30,7 +30,8 @@ struct CaptureBoard {
 /// incomplete, wrong_size, no_edge, repeated and unsettled.
 struct CollectorCounts {
   std::uint64_t stored = 0;
-  std::uint64_t missing = 0;     ///< triggers overtaken without a stored frame, whatever the reason
+  std::uint64_t missing = 0;     ///< triggers that brought no frame, fewer than make a camera lost
+  std::uint64_t away = 0;        ///< the same, in a row that makes it lost, or until it was back
   std::uint64_t incomplete = 0;  ///< packets missing after all resends
   std::uint64_t wrong_size = 0;  ///< another size or format than the profile says
   std::uint64_t no_edge = 0;     ///< taken when no trigger asked for it
@@ -38,6 +39,9 @@ struct CollectorCounts {
   std::uint64_t unsettled = 0;   ///< its trigger could not be told for sure; see FrameNamer
   std::uint64_t unattributed = 0;  ///< the sum of the last three
   rt::Timestamp last_stored;
+
+  /// Of several cameras: the newest counts as last_stored.
+  CollectorCounts& operator+=(const CollectorCounts& other);
 };
 
 /// Takes one camera's frames: names the trigger of each, stores it in the history, counts what
@@ -55,7 +59,10 @@ class Collector final : public hal::FrameSink {
 
   /// A new stream begins: its camera may have been switched off, its clock set back.
   /// Threads  Whoever starts the camera, while it is stopped.
-  void restart() { namer_.restart(); }
+  void restart() {
+    namer_.restart();
+    restarted_ = true;
+  }
 
   [[nodiscard]] CollectorCounts counts() const RT_SAFE;
 
@@ -63,7 +70,8 @@ class Collector final : public hal::FrameSink {
   [[nodiscard]] std::uint64_t triggerOf(const hal::FrameArrival& arrival) RT_SAFE;
 
   const std::uint32_t camera_;
-  FrameNamer namer_;  // the receive thread's
+  FrameNamer namer_;        // the receive thread's
+  bool restarted_ = false;  // likewise; since the last stored frame
   CameraFrames& frames_;
   CaptureBoard& board_;
   TraceProducer* trace_;  // none: not traced
@@ -71,6 +79,7 @@ class Collector final : public hal::FrameSink {
   // Written by the receive thread alone.
   std::atomic<std::uint64_t> stored_{0};
   std::atomic<std::uint64_t> missing_{0};
+  std::atomic<std::uint64_t> away_{0};
   std::atomic<std::uint64_t> incomplete_{0};
   std::atomic<std::uint64_t> wrong_size_{0};
   std::atomic<std::uint64_t> no_edge_{0};

@@ -41,6 +41,7 @@ std::string toJson(const Status& status) {
       {"shown_hz", status.shown_hz},
       {"triggers", status.triggers},
       {"frames_lost", status.frames_lost},
+      {"frames_away", status.frames_away},
       {"frames_incomplete", status.frames_incomplete},
       {"cameras", nlohmann::ordered_json::array()},
       {"genlock", genlockObject(status)},
@@ -56,6 +57,7 @@ std::string toJson(const Status& status) {
                                  {"state", nameOf(camera.state)},
                                  {"reason", camera.reason},
                                  {"frames_lost", camera.frames_lost},
+                                 {"frames_away", camera.frames_away},
                                  {"frames_incomplete", camera.frames_incomplete}});
   }
   return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

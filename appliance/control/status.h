@@ -20,6 +20,7 @@ struct CameraStatus {
   CameraTrouble trouble = CameraTrouble::kNone;
   std::string reason;  ///< what is wrong and what to do; empty: nothing
   std::uint64_t frames_lost = 0;
+  std::uint64_t frames_away = 0;  ///< not taken because the camera was lost
   std::uint64_t frames_incomplete = 0;
 };
 
@@ -35,6 +36,7 @@ struct Status {
   double shown_hz = 0;  ///< distinct frame sets a second
   std::uint64_t triggers = 0;
   std::uint64_t frames_lost = 0;
+  std::uint64_t frames_away = 0;
   std::uint64_t frames_incomplete = 0;
   std::vector<CameraStatus> cameras;
   GenlockStatus genlock;

@@ -22,7 +22,7 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         "target   %.3f %.3f %.3f m\n"
         "shown    %.1f frame sets a second, by %s\n"
         "source   %s\n"
-        "frames   %llu triggers, %llu frames lost, %llu incomplete\n",
+        "frames   %llu triggers; %llu frames lost, %llu incomplete, %llu of cameras that were away\n",
         status.at("mode").get<std::string>().c_str(), status.at("delay_ms").get<double>() / 1e3,
         status.at("history_ms").get<double>() / 1e3, view, status.at("cameras").size(),
         substitute.c_str(), status.at("target_m").at(0).get<double>(),
@@ -31,7 +31,8 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         status.at("source_path").get<std::string>().c_str(),
         status.at("triggers").get<unsigned long long>(),
         status.at("frames_lost").get<unsigned long long>(),
-        status.at("frames_incomplete").get<unsigned long long>());
+        status.at("frames_incomplete").get<unsigned long long>(),
+        status.at("frames_away").get<unsigned long long>());
     std::string text = head.data();
     const std::string message = status.at("screen").at("message").get<std::string>();
     text += "screen   " + status.at("screen").at("state").get<std::string>() +
@@ -53,10 +54,12 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
       const auto reason = camera.at("reason").get<std::string>();
       const auto lost = camera.at("frames_lost").get<std::uint64_t>();
       const auto incomplete = camera.at("frames_incomplete").get<std::uint64_t>();
-      if (state == "streaming" && lost == 0 && incomplete == 0) continue;
+      const auto away = camera.at("frames_away").get<std::uint64_t>();
+      if (state == "streaming" && lost + incomplete + away == 0) continue;
       text += "camera " + std::to_string(number) + " (" + camera.at("name").get<std::string>() +
               "): " + state + (reason.empty() ? "" : ": " + reason) + "; " + std::to_string(lost) +
-              " lost, " + std::to_string(incomplete) + " incomplete\n";
+              " lost, " + std::to_string(incomplete) + " incomplete, " + std::to_string(away) +
+              " while away\n";
     }
     for (const auto& line : status.at("degraded"))
       text += "degraded: " + line.get<std::string>() + "\n";

@@ -120,6 +120,7 @@ void visitFields(R& record, Visitor&& visit) {
   visit("cpu_seconds", record.cpu_seconds);
   visit("memory_bytes", record.memory_bytes);
   visit("frames_lost", record.frames_lost);
+  visit("frames_away", record.frames_away);
   visit("frames_incomplete", record.frames_incomplete);
   visit("frames_unattributed", record.frames_unattributed);
   visit("pictures_skipped", record.pictures_skipped);

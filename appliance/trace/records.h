@@ -129,6 +129,7 @@ struct SummaryRecord {
   double cpu_seconds = 0;          ///< user and system time of the daemon
   std::uint64_t memory_bytes = 0;  ///< resident at the end
   std::uint64_t frames_lost = 0;   ///< as the running daemon counted them
+  std::uint64_t frames_away = 0;   ///< not taken because their camera was lost
   std::uint64_t frames_incomplete = 0;
   std::uint64_t frames_unattributed = 0;
   std::uint64_t pictures_skipped = 0;  ///< vblanks for which the render thread came too late

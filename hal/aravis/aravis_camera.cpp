@@ -177,23 +177,15 @@ void AravisCamera::deliver() {
   arv_stream_push_buffer(stream_.get(), ARV_BUFFER(g_object_ref(buffers_[next].get())));
 }
 
-/// Aravis makes its table of description formats at the first description it reads, without a lock:
-/// cameras that are opened at once would find it half made, and then have no features.
-void makeSharedTables() {
-  static const Ref<ArvDomDocument> kFirst{
-      arv_dom_implementation_create_document(nullptr, "RegisterDescription")};
-}
-
 /// Opened by address over the interface that the routes name. Aravis' own opening by name looks
 /// through every interface and holds a lock meanwhile: one dead camera would delay all the others.
 Ref<ArvCamera> openByAddress(const std::string& address, GlibError& error) {
-  makeSharedTables();
   const std::string here = localAddressTowards(address);
   const Ref<GInetAddress> interface{g_inet_address_new_from_string(here.c_str())};
   const Ref<GInetAddress> camera{g_inet_address_new_from_string(address.c_str())};
   if (!interface || !camera) return nullptr;
-  // Aravis reads a camera's description with one parser state for the whole process. Cameras that
-  // do not answer were found out before, so nobody waits here for a dead one.
+  // Aravis reads a camera's description with one parser state and one table of formats for the
+  // whole process. Cameras that do not answer were found out before: nobody waits for a dead one.
   static std::mutex one_description_at_a_time;
   const std::lock_guard lock(one_description_at_a_time);
   const Ref<ArvDevice> device{arv_gv_device_new(interface.get(), camera.get(), error.out())};

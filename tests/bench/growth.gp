@@ -11,6 +11,7 @@ set title "Reception against the number of cameras (640x480, 30 Hz)"
 set xlabel "cameras"
 set xrange [0:*]
 line(x) = offset + slope * x
+set fit quiet nolog
 fit line(x) data index 0 using 1:2 via offset, slope
 plot data index 0 using 1:2 with points pt 7 ps 1.3 lc rgb "#c03028" title "kagami", \
      line(x) with lines lc rgb "#c03028" title sprintf("kagami: %.1f ms + %.2f ms per camera", offset * 1e3, slope * 1e3), \

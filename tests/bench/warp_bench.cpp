@@ -193,6 +193,7 @@ std::vector<bench::Comparison> compare(const bench::Repetitions& results, unsign
   const auto on_gpu = results.samples("ours/1280/720:gpu", "").values;
   const bool gpu = !on_gpu.empty() && on_gpu.front() != 0;
   // The processor is what a GPU must beat with all it has; beside one thread it says nothing.
+  // Judged is the warp: the mosaic's rows count the upload, too, which OpenCV does without.
   const bench::Bar bar =
       gpu ? bench::Bar{Kind::kRatioAtLeast, 3} : bench::Bar{Kind::kRatioAtMost, 2};
   const std::string not_judged = gpu && !all_cpus ? "one thread only" : "";
@@ -204,9 +205,7 @@ std::vector<bench::Comparison> compare(const bench::Repetitions& results, unsign
                    .unit = "ms",
                    .ours = samples("ours" + at, gpu ? "EGL on a GPU" : "EGL on llvmpipe"),
                    .rival = samples("demosaicAndRemap" + at, "cvtColor, maps, remap"),
-                   .as_speed = gpu,
-                   .bar = bar,
-                   .not_judged = not_judged});
+                   .as_speed = gpu});
     out.push_back({.what = rows + with + ", the warp alone",
                    .unit = "ms",
                    .ours = samples("ours" + at + ":warp", "mesh, warp, sRGB, text"),

@@ -239,6 +239,7 @@ TEST(WholeBox, GivesEveryLockedPictureItsVblank) {
   ASSERT_EQ(run.report_exit, 0) << run.report_output;
   EXPECT_EQ(run.figures["genlock"]["state"], "locked");
   EXPECT_TRUE(run.figures["genlock"]["unlocks"].empty());
+  EXPECT_GT(run.figures["genlock"]["lead_ms"]["p50"], 0) << "the trigger comes before its picture";
   std::vector<int> pictures;
   for (const auto& [vblanks, count] :
        run.figures["genlock"]["trigger_to_flip_vblanks"]["histogram"].items()) {

@@ -28,7 +28,7 @@ NetworkWish anyWish() {
 /// A wish that is possible, at whatever rate it takes.
 NetworkWish anyPossibleWish() {
   NetworkWish wish = anyWish();
-  wish.rate_hz = highestRate_hz(wish) * anyIn(1, 1001) * 1e-3;
+  wish.rate_hz = highestRate_hz(wish) * (anyIn(1, 1001) / 1000.0);  // exactly the highest, at most
   return wish;
 }
 

@@ -65,6 +65,16 @@ constexpr std::array kKinds = {
               .recovery = kRealigned},
     FaultKind{.name = "reorders 5 %", .begin = "reorder 5", .end = "reorder 0"},
     FaultKind{.name = "duplicates 5 %", .begin = "duplicate 5", .end = "duplicate 0"},
+    FaultKind{.name = "link at 100 Mb/s",
+              .begin = "link 100",
+              .end = "clear",
+              .may_lose = kAnyCause,
+              .recovery = kReopened},
+    FaultKind{.name = "large packets lost",
+              .begin = "mtu 1500",
+              .end = "clear",
+              .may_lose = kAnyCause,
+              .recovery = kReopened},
     FaultKind{.name = "frame ids jump",
               .begin = "frame-id 65530",
               .lasts = 1s,
@@ -78,9 +88,14 @@ std::span<const FaultKind> faultKinds() {
   return kKinds;
 }
 
+const FaultKind* findFaultKind(std::string_view name) {
+  const auto* const found = std::ranges::find(kKinds, name, &FaultKind::name);
+  return found == kKinds.end() ? nullptr : found;
+}
+
 PlannedFault FaultPlan::next() {
   if (round_.empty()) {
-    for (const FaultKind& kind : kKinds) round_.push_back(&kind);
+    for (const FaultKind& kind : kinds_) round_.push_back(&kind);
     std::ranges::shuffle(round_, engine_);
   }
   const FaultKind* kind = round_.front();

@@ -43,6 +43,8 @@ struct FaultKind {
 };
 
 [[nodiscard]] std::span<const FaultKind> faultKinds();
+/// The one of that name; nullptr: there is none.
+[[nodiscard]] const FaultKind* findFaultKind(std::string_view name);
 
 /// The next thing to go wrong.
 struct PlannedFault {
@@ -51,15 +53,18 @@ struct PlannedFault {
   rt::Nanoseconds lasts;
 };
 
-/// Random faults, the same for the same seed: every kind once in random order, then again. Pure.
+/// Random faults, the same for the same seed: every kind of @p kinds once in random order, then
+/// again. Pure.
 class FaultPlan {
  public:
   /// @p every: from one fault's begin to the next; a fault lasts at most half of it.
-  FaultPlan(std::uint32_t cameras, rt::Nanoseconds every, std::uint64_t seed)
-      : cameras_(cameras), every_(every), engine_(seed) {}
+  FaultPlan(std::span<const FaultKind> kinds, std::uint32_t cameras, rt::Nanoseconds every,
+            std::uint64_t seed)
+      : kinds_(kinds), cameras_(cameras), every_(every), engine_(seed) {}
   [[nodiscard]] PlannedFault next();
 
  private:
+  std::span<const FaultKind> kinds_;
   std::uint32_t cameras_;
   rt::Nanoseconds every_;
   std::mt19937_64 engine_;

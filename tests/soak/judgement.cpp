@@ -13,7 +13,8 @@ double seconds(rt::Nanoseconds time) {
 
 bool explains(const FaultOutcome& outcome, const LostFrame& lost, rt::Nanoseconds period) {
   const Fault& fault = outcome.fault;
-  return fault.camera == lost.camera && fault.kind->may_lose.has(lost.cause) &&
+  const LossCause cause = lost.cause == LossCause::kLateEdge ? LossCause::kNotSent : lost.cause;
+  return fault.camera == lost.camera && fault.kind->may_lose.has(cause) &&
          lost.edge >= fault.from - 2 * period && lost.edge <= fault.until + fault.kind->recovery &&
          outcome.lostFrames() < fault.kind->most_frames;
 }
@@ -48,7 +49,8 @@ Judgement judge(std::span<const LostFrame> lost, std::span<const Fault> faults,
       }
     }
     if (explained == nullptr) {
-      judgement.unexplained.push_back(frame);
+      const bool late = frame.cause == LossCause::kLateEdge;
+      (late ? judgement.late_edges : judgement.unexplained).push_back(frame);
       continue;
     }
     ++explained->lost[static_cast<std::size_t>(frame.cause)];

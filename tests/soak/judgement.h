@@ -30,6 +30,8 @@ struct FaultOutcome {
 
 struct Judgement {
   std::vector<FaultOutcome> faults;
+  std::vector<LostFrame>
+      late_edges;  ///< lost because this machine stood still, on no faulty camera
   std::vector<LostFrame> unexplained;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace soak {
 namespace {
@@ -16,7 +17,7 @@ std::uint64_t onWire(std::uint64_t frame_id) {
 
 std::string_view nameOf(LossCause cause) {
   constexpr std::array<std::string_view, kLossCauses> kNames = {
-      "not sent", "never came", "incomplete", "wrong size", "unattributed"};
+      "not sent", "late edge", "never came", "incomplete", "wrong size", "unattributed"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 
@@ -60,6 +61,8 @@ void LossAccount::judge(const appliance::TriggerRecord& trigger) {
   const rt::Timestamp edge = trigger.trigger_edge_before;
   const bool settled = edge >= *first_edge_ + kSettling;
   if (settled) ++triggers_judged_;
+  const rt::Nanoseconds lateness = edge - trigger.deadline;
+  const bool late = std::max(lateness, std::exchange(last_lateness_, lateness)) >= kLate;
   for (std::uint32_t i = 0; i < cameras_.size(); ++i) {
     Camera& camera = cameras_[i];
     const auto sent = sentFor(camera, trigger);
@@ -73,8 +76,8 @@ void LossAccount::judge(const appliance::TriggerRecord& trigger) {
       ++lost_while_settling_;
       continue;
     }
-    const LossCause cause = sent ? causeOf(camera, trigger, *sent) : LossCause::kNotSent;
-    lost_.push_back({i, cause, trigger.trigger, edge});
+    const LossCause not_sent = late ? LossCause::kLateEdge : LossCause::kNotSent;
+    lost_.push_back({i, sent ? causeOf(camera, trigger, *sent) : not_sent, trigger.trigger, edge});
   }
 }
 

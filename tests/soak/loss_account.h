@@ -15,13 +15,14 @@ namespace soak {
 
 /// What became of a frame that the box did not store.
 enum class LossCause : std::uint8_t {
-  kNotSent,       ///< the camera sent none for this trigger
-  kNeverCame,     ///< sent, but the box has no record of it
-  kIncomplete,    ///< came with packets missing
-  kWrongSize,     ///< came in another size than configured
+  kNotSent,     ///< the camera sent none for this trigger
+  kLateEdge,    ///< likewise, and its edge or the one before came late: the cameras were not ready
+  kNeverCame,   ///< sent, but the box has no record of it
+  kIncomplete,  ///< came with packets missing
+  kWrongSize,   ///< came in another size than configured
   kUnattributed,  ///< came, but near no trigger edge, or aborted
 };
-inline constexpr std::size_t kLossCauses = 5;
+inline constexpr std::size_t kLossCauses = 6;
 [[nodiscard]] std::string_view nameOf(LossCause cause);
 
 struct LostFrame {
@@ -57,6 +58,8 @@ class LossAccount {
 
   /// Triggers of this long after the first one are not judged: cameras find their pace.
   static constexpr rt::Nanoseconds kSettling = std::chrono::seconds(2);
+  /// An edge this long after its deadline is late: this machine stood still.
+  static constexpr rt::Nanoseconds kLate = std::chrono::milliseconds(2);
   /// No frame is on its way for longer.
   static constexpr rt::Nanoseconds kLongestWay = std::chrono::seconds(2);
 
@@ -93,6 +96,7 @@ class LossAccount {
   std::vector<Camera> cameras_;
   std::deque<appliance::TriggerRecord> triggers_;
   std::optional<rt::Timestamp> first_edge_;
+  rt::Nanoseconds last_lateness_{};  // of the trigger judged before
   rt::Timestamp trace_passed_;
   rt::Timestamp wire_passed_;
   std::vector<LostFrame> lost_;

@@ -188,8 +188,8 @@ TEST(Judgement, TellsAPersonWhichFrame) {
 }
 
 TEST(FaultPlan, BringsEveryKindOnceARoundAndTheSameForTheSameSeed) {
-  FaultPlan plan(20, 10s, 5);
-  FaultPlan again(20, 10s, 5);
+  FaultPlan plan(faultKinds(), 20, 10s, 5);
+  FaultPlan again(faultKinds(), 20, 10s, 5);
   std::set<const FaultKind*> kinds;
   for (std::size_t i = 0; i < faultKinds().size(); ++i) {
     const PlannedFault fault = plan.next();

@@ -123,6 +123,7 @@ class RunWriter {
          {"cpu_seconds", 1.5},
          {"memory_bytes", 123456},
          {"frames_lost", 0},
+         {"frames_away", 0},
          {"frames_incomplete", 0},
          {"frames_unattributed", 0},
          {"pictures_skipped", 0},

@@ -64,11 +64,12 @@ TEST(StatusText, SaysWhatIsWrongWithACameraAndWhatToDo) {
                      .state = appliance::CameraState::kLost,
                      .trouble = appliance::CameraTrouble::kNoAnswer,
                      .reason = "no frames since 0.4 s: check its cable",
-                     .frames_lost = 16}};
+                     .frames_lost = 2,
+                     .frames_away = 16}};
   const auto text = appliance::statusText(appliance::toJson(status));
   ASSERT_TRUE(text.has_value()) << text.error();
-  EXPECT_THAT(*text, HasSubstr("camera 2 (right): lost: no frames since 0.4 s: check its cable; 16 "
-                               "lost, 0 incomplete\n"));
+  EXPECT_THAT(*text, HasSubstr("camera 2 (right): lost: no frames since 0.4 s: check its cable; 2 "
+                               "lost, 0 incomplete, 16 while away\n"));
   EXPECT_THAT(*text, Not(HasSubstr("left"))) << "all is well with it";
 }
 

@@ -26,7 +26,10 @@ std::vector<std::string> emulatorCommand(std::uint32_t cameras, std::uint32_t wi
           "--first-address",
           "127.0.9.1",
           "--wire-port",
-          std::to_string(EmulatedRig::kWirePort)};
+          std::to_string(EmulatedRig::kWirePort),
+          // Hardware is never late for want of a processor.
+          "--realtime-priority",
+          "85"};
 }
 
 double processCpu_s() {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <expected>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "appliance/capture/association.h"
+#include "appliance/capture/camera_supervisor.h"
+#include "appliance/capture/collector.h"
+#include "appliance/capture/frame_history.h"
+#include "appliance/config/config.h"
+#include "appliance/control/status.h"
+#include "appliance/geometry/rig.h"
+#include "appliance/trace/trace_writer.h"
+
+namespace appliance {
+
+/// All cameras of the rig: each one's collector, and the supervisor that keeps it streaming.
+///
+/// Threads  All members: the owner. A thread per camera watches it, and its backend receives on
+///          another.
+/// Memory   Everything given outlives the array.
+class CameraArray {
+ public:
+  /// @p trace: none, or one with a producer per camera from @p first_producer on.
+  CameraArray(const Config& config, const Rig& rig, FrameHistory& history, CaptureBoard& board,
+              TraceWriter* trace, std::size_t first_producer);
+
+  /// All at once; returns when every camera streams or is known not to. One that does not is named
+  /// in statuses() and tried again for as long as it takes.
+  /// Errors: no thread could be made; those that were are stopped by stop().
+  [[nodiscard]] std::expected<void, std::string> start();
+  void stop();
+
+  [[nodiscard]] std::vector<CameraStatus> statuses() const;
+  /// What is not as it should be although a camera streams, or would: one line each.
+  [[nodiscard]] std::vector<std::string> remarks() const;
+  /// The sums over all cameras.
+  [[nodiscard]] CollectorCounts counts() const;
+
+ private:
+  const Rig& rig_;
+  std::vector<std::unique_ptr<Collector>> collectors_;
+  std::vector<std::unique_ptr<CameraSupervisor>> supervisors_;
+};
+
+}  // namespace appliance
