@@ -8,15 +8,18 @@ usage() {
   cat <<'TEXT'
 Usage: ./dev demo [OPTIONS]
 
-Runs the whole box on emulated GigE Vision cameras: live, delayed, frozen, sweep. First the stamp
-scene, then, where it is found, a real recording. Exits non-zero when frames were lost or the
-machine could not keep the emulated cameras' times (then nothing is said about losses).
+Runs the whole box on emulated GigE Vision cameras: live, delayed, frozen, sweep. The cameras see an
+athlete at practice; the first time that scene is drawn, which takes up to a minute. Exits non-zero
+when frames were lost or the machine could not keep the emulated cameras' times (then nothing is
+said about losses).
 
   --seconds S     length of each run (default 60)
-  --cameras N     cameras in the stamp scene (default 20)
+  --cameras N     cameras in the studio or the stamp scene (default 20)
   --size WxH      their size in pixels (default 1280x1024)
   --fps F         trigger rate (default 40)
-  --scene SCENE   stamp, recording or all (default), or a folder with videos and rig.toml
+  --scene SCENE   studio (default); stamp: every frame carries its number, then a screen of full
+                  size; recording: real videos; all: these three one after the other; or a
+                  folder with videos and rig.toml
   --out DIR       where film, stills and reports go (default out/demo)
   --report FILE   also copy report.json of the first scene there
   --interactive   keys of this terminal instead of the script; ends with Ctrl-C
@@ -33,13 +36,14 @@ bin=$root/build/release/bin
 rate_of_recording=30   # Hz: a 1 Gb/s link carries at most 55 of its portrait frames a second
 
 zoom=1.0
+emulator_patience=600  # tenths of a second
 picture=1280x720
 filmed=yes
 seconds=60
 cameras=20
 size=1280x1024
 fps=40
-scene=all
+scene=studio
 out=out/demo
 report=
 interactive=
@@ -223,7 +227,7 @@ start_emulator() {  # RUN-FOLDER OPTION...
   "$bin/kagami-emulator" "$@" --realtime-priority 85 --wire-log "$run/wire.csv" --stats "$run/emulator.json" \
     > "$run/emulator.log" 2>&1 </dev/null &
   emulator=$!
-  wait_for_line "$emulator" "$run/emulator.log" '^ready' 600 ||
+  wait_for_line "$emulator" "$run/emulator.log" '^ready' "$emulator_patience" ||
     broken kagami-emulator "$run/emulator.log" 'its message says what to do'
 }
 
@@ -340,6 +344,17 @@ run_stamp() {  # FOLDER
   [ -n "$interactive" ] || run_full_hd "$1"
 }
 
+# What was drawn stays in the user's cache, so only the first run waits for it; while it plays, the
+# emulator draws the rest with what the processors have left over.
+run_studio() {  # FOLDER
+  say 'studio: the first time the hall is drawn, up to a minute'
+  usual_patience=$emulator_patience
+  emulator_patience=3000
+  run_scene studio "$1" "$fps" --scene studio --cameras "$cameras" --size "$size" \
+    --rig-out "$1/run/rig.toml" --studio-truth "$1/truth"
+  emulator_patience=$usual_patience
+}
+
 # How many frame sets a second the same cameras give on a screen of full size: live, not filmed.
 run_full_hd() {  # FOLDER
   run=$1/full-hd/run
@@ -405,10 +420,12 @@ mkdir -p "$out" || fail "--out $out cannot be made"
 out=$(cd -- "$out" && pwd)
 verdict=0
 case $scene in
+  studio) run_studio "$out" ;;
   stamp) run_stamp "$out" ;;
   recording) run_recording "$out" ;;
   all)
-    run_stamp "$out"
+    run_studio "$out"
+    [ -n "$stopped" ] || run_stamp "$out/stamp"
     [ -n "$stopped" ] || run_recording "$out/recording"
     ;;
   *) run_folder scene "$out" "$fps" "$scene" ;;
