@@ -68,7 +68,9 @@ void LossAccount::judge(const appliance::TriggerRecord& trigger) {
     const auto sent = sentFor(camera, trigger);
     const auto stored = storedFor(camera, trigger.trigger);
     if (stored) {
-      if (sent != stored) misattributed_.push_back({i, trigger.trigger, edge});
+      if (sent != stored && wasTakenElsewhere(camera, trigger, *stored)) {
+        misattributed_.push_back({i, trigger.trigger, edge});
+      }
       if (settled) ++frames_stored_;
       continue;
     }
@@ -86,14 +88,34 @@ void LossAccount::judge(const appliance::TriggerRecord& trigger) {
 std::optional<std::uint64_t> LossAccount::sentFor(Camera& camera,
                                                   const appliance::TriggerRecord& trigger) {
   while (!camera.sent.empty() && camera.sent.front().trigger_edge < trigger.trigger_edge_before) {
-    camera.sent.pop_front();
+    pass(camera);
   }
   if (camera.sent.empty() || camera.sent.front().trigger_edge > trigger.trigger_edge_after) {
     return std::nullopt;
   }
   const std::uint64_t wire_id = camera.sent.front().frame_id;
-  camera.sent.pop_front();
+  pass(camera);
   return wire_id;
+}
+
+void LossAccount::pass(Camera& camera) {
+  constexpr std::size_t kKept = 64;
+  camera.passed.push_back(camera.sent.front());
+  camera.sent.pop_front();
+  if (camera.passed.size() > kKept) camera.passed.pop_front();
+}
+
+/// A frame that the wire log does not know was cut off there and completed by resends: nothing
+/// speaks against it.
+bool LossAccount::wasTakenElsewhere(const Camera& camera, const appliance::TriggerRecord& trigger,
+                                    std::uint64_t wire_id) {
+  for (const auto* frames : {&camera.passed, &camera.sent}) {
+    const auto found = std::ranges::find(*frames, wire_id, &appliance::SentFrame::frame_id);
+    if (found == frames->end()) continue;
+    return found->trigger_edge < trigger.trigger_edge_before - kSameMoment ||
+           found->trigger_edge > trigger.trigger_edge_after + kSameMoment;
+  }
+  return false;
 }
 
 std::optional<std::uint64_t> LossAccount::storedFor(Camera& camera, std::uint64_t trigger) {

@@ -32,7 +32,7 @@ struct LostFrame {
   rt::Timestamp edge;
 };
 
-/// A frame that was stored as that of a trigger which the camera did not send it for.
+/// A frame that was stored as that of a trigger at whose edge it was not taken.
 struct MisattributedFrame {
   std::uint32_t camera = 0;
   std::uint64_t trigger = 0;
@@ -60,6 +60,8 @@ class LossAccount {
   static constexpr rt::Nanoseconds kSettling = std::chrono::seconds(2);
   /// An edge this long after its deadline is late: this machine stood still.
   static constexpr rt::Nanoseconds kLate = std::chrono::milliseconds(2);
+  /// A frame that was taken this near an edge shows its moment, whatever the camera took it for.
+  static constexpr rt::Nanoseconds kSameMoment = std::chrono::milliseconds(2);
   /// No frame is on its way for longer.
   static constexpr rt::Nanoseconds kLongestWay = std::chrono::seconds(2);
 
@@ -80,14 +82,19 @@ class LossAccount {
   };
   struct Camera {
     std::deque<appliance::SentFrame> sent;
+    std::deque<appliance::SentFrame> passed;  // the last ones whose edge was judged
     std::deque<Arrived> stored;
     std::deque<Arrived> refused;
   };
 
   void judgePassed();
+  static void pass(Camera& camera);
   void judge(const appliance::TriggerRecord& trigger);
   [[nodiscard]] static std::optional<std::uint64_t> sentFor(
       Camera& camera, const appliance::TriggerRecord& trigger);
+  [[nodiscard]] static bool wasTakenElsewhere(const Camera& camera,
+                                              const appliance::TriggerRecord& trigger,
+                                              std::uint64_t wire_id);
   [[nodiscard]] static std::optional<std::uint64_t> storedFor(Camera& camera,
                                                               std::uint64_t trigger);
   [[nodiscard]] static LossCause causeOf(Camera& camera, const appliance::TriggerRecord& trigger,

@@ -106,6 +106,29 @@ TEST(LossAccount, NamesWhatTheBoxSaidOfAFrameThatCame) {
   EXPECT_EQ(account.lost()[2].cause, LossCause::kUnattributed);
 }
 
+TEST(LossAccount, TakesAFrameOfItsOwnForAnEdgeThatItMet) {
+  LossAccount account(1);
+  for (std::uint64_t t = 1; t <= 400; ++t) {
+    const rt::Timestamp edge = edgeOf(t);
+    account.triggerFired({.trigger = t,
+                          .deadline = edge,
+                          .trigger_edge_before = edge,
+                          .trigger_edge_after = edge + 10us});
+    // The camera was busy with a frame of its own when edge 300 came, and taken for edge 310 is one
+    // of 8 ms before.
+    const rt::Nanoseconds early = t == 300 ? 600us : t == 310 ? 8ms : -5us;
+    account.frameSent({.camera = 0,
+                       .frame_id = t,
+                       .trigger = early > 0ns ? 0 : t,
+                       .trigger_edge = edge - early,
+                       .first_packet = edge + 1ms});
+    account.frameArrived({.camera = 0, .trigger = t, .frame_id = t, .first_packet = edge + 1ms});
+  }
+  account.finish(edgeOf(400));
+  ASSERT_THAT(account.misattributed(), SizeIs(1));
+  EXPECT_EQ(account.misattributed()[0].trigger, 310u);
+}
+
 TEST(LossAccount, CatchesAFrameThatIsStoredForAnotherTrigger) {
   Simulation simulation;
   simulation.sends = [](std::uint32_t camera, std::uint64_t t) { return camera != 0 || t != 250; };
