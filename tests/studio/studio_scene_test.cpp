@@ -94,7 +94,7 @@ TEST(Studio, ShowsEachTriggerItsMomentWhicheverSlotItGoesTo) {
   const auto& play = (*scene)->play();
   // In turn, with missed triggers, and again from the beginning.
   std::uint32_t slot = 0;
-  for (const std::uint64_t trigger : {1, 2, 3, 4, 7, 8, 9, 10, 18, 23, 24}) {
+  for (const std::uint64_t trigger : {1U, 2U, 3U, 4U, 7U, 8U, 9U, 10U, 18U, 23U, 24U}) {
     const auto picture = (*scene)->expose(1, trigger, slot++ % emulator::kFrameHistory);
     const cv::Mat shown(256, 320, CV_8U, const_cast<std::uint8_t*>(picture.pieces[0].data()));
     const auto moment = static_cast<std::uint32_t>((trigger - 1) % 8);

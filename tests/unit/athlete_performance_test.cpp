@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 // COCO order.
 constexpr std::size_t kNose = 0;
-constexpr std::size_t kLeftShoulder = 5, kRightShoulder = 6, kLeftWrist = 9, kRightWrist = 10;
+constexpr std::size_t kLeftWrist = 9, kRightWrist = 10;
 constexpr std::size_t kLeftHip = 11, kRightHip = 12, kRightAnkle = 16;
 
 PerformanceOptions doing(std::vector<Action> actions, double seconds = 12) {

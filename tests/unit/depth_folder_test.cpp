@@ -30,7 +30,7 @@ constexpr std::uint32_t kWidth = 32;
 constexpr std::uint32_t kHeight = 24;
 
 class Folder : public testing::Test {
- protected:
+ public:
   Folder() {
     std::string pattern = fs::temp_directory_path() / "kagami-folder-XXXXXX";
     scratch_ = ::mkdtemp(pattern.data());

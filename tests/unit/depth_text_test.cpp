@@ -9,7 +9,6 @@ using appliance::DepthReport;
 using appliance::depthText;
 using appliance::depthTrouble;
 using testing::HasSubstr;
-using testing::Not;
 
 TEST(DepthText, TellsWhatStreamsInOneLine) {
   DepthReport report{.sensor = {.state = hal::DepthState::kStreaming,

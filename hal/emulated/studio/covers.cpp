@@ -51,9 +51,9 @@ cv::Mat drawBrick(std::uint64_t seed) {
     const float edge = std::min(edge_x, edge_y) - 1.6f * (grain.at<float>(y, x) - 0.3f);
     const float joint = std::clamp((edge - 0.6f) / 1.6f, 0.0f, 1.0f);
     const float lit_edge = edge_y < 3.0f && course - static_cast<float>(row) > 0.5f ? 0.05f : 0.0f;
-    const float body = 0.84f + tone[static_cast<std::size_t>(row * kBricks + brick)] +
-                       0.16f * (stain.at<float>(y, x) - 0.5f) +
-                       0.20f * (grain.at<float>(y, x) - 0.5f) + lit_edge;
+    const float body =
+        0.84f + tone[static_cast<std::size_t>(row) * kBricks + static_cast<std::size_t>(brick)] +
+        0.16f * (stain.at<float>(y, x) - 0.5f) + 0.20f * (grain.at<float>(y, x) - 0.5f) + lit_edge;
     return body * joint + (0.58f + 0.2f * (stain.at<float>(y, x) - 0.5f)) * (1 - joint);
   });
   for (int i = 0; i < 70; ++i) {  // chipped paint shows the clay

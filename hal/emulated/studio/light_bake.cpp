@@ -108,9 +108,9 @@ class Baker {
       if (!hit || !hit->front) continue;
       const LightMap::Place& place = map.places[hit->surface];
       const auto x =
-          static_cast<std::uint32_t>(hit->u * static_cast<float>(place.width - 1) + 0.5f);
+          static_cast<std::uint32_t>(std::lround(hit->u * static_cast<float>(place.width - 1)));
       const auto y =
-          static_cast<std::uint32_t>(hit->v * static_cast<float>(place.height - 1) + 0.5f);
+          static_cast<std::uint32_t>(std::lround(hit->v * static_cast<float>(place.height - 1)));
       const Vector4f& light = map.texels[std::size_t{place.y + y} * map.width + place.x + x];
       const Vector3f albedo = meanAlbedo(surfaces_[hit->surface]);
       sum.head<3>() += albedo.cwiseProduct(light.head<3>());
@@ -195,7 +195,8 @@ void smooth(LightMap& map, const LightMap::Place& place, int reach) {
       for (int dy = -reach; dy <= reach; ++dy) {
         for (int dx = -reach; dx <= reach; ++dx) {
           if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
-          sum += before[static_cast<std::size_t>((y + dy) * width + x + dx)];
+          sum += before[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(x + dx)];
           weights += 1;
         }
       }

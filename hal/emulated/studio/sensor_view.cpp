@@ -181,8 +181,8 @@ Patch SensorView::develop(std::uint64_t moment, const std::vector<PeoplePicture>
   for (const PeoplePicture& picture : people) all |= picture.area;
   Patch patch;
   const auto share = [&](const Pixel& pixel) {
-    const int column = static_cast<int>(pixel.floor_x / kFloorScale);
-    const int row = static_cast<int>(pixel.floor_y / kFloorScale);
+    const int column = static_cast<int>(static_cast<float>(pixel.floor_x) / kFloorScale);
+    const int row = static_cast<int>(static_cast<float>(pixel.floor_y) / kFloorScale);
     const float u = static_cast<float>(pixel.floor_x) / kFloorScale - static_cast<float>(column);
     const float v = static_cast<float>(pixel.floor_y) / kFloorScale - static_cast<float>(row);
     const auto* low = shade.share.ptr<float>(row) + column;

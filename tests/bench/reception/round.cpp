@@ -18,18 +18,11 @@ constexpr int kWarmUpTriggers = 12;
 
 std::vector<std::string> emulatorCommand(std::uint32_t cameras, std::uint32_t width_px,
                                          std::uint32_t height_px) {
-  return {KAGAMI_EMULATOR,
-          "--cameras",
-          std::to_string(cameras),
-          "--size",
-          std::to_string(width_px) + "x" + std::to_string(height_px),
-          "--first-address",
-          "127.0.9.1",
-          "--wire-port",
-          std::to_string(EmulatedRig::kWirePort),
+  return {KAGAMI_EMULATOR, "--cameras", std::to_string(cameras), "--size",
+          std::to_string(width_px) + "x" + std::to_string(height_px), "--first-address",
+          "127.0.9.1", "--wire-port", std::to_string(EmulatedRig::kWirePort),
           // Hardware is never late for want of a processor.
-          "--realtime-priority",
-          "85"};
+          "--realtime-priority", "85"};
 }
 
 double processCpu_s() {
