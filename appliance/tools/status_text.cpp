@@ -22,7 +22,8 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         "target   %.3f %.3f %.3f m\n"
         "shown    %.1f frame sets a second, by %s\n"
         "source   %s\n"
-        "frames   %llu triggers; %llu frames lost, %llu incomplete, %llu of cameras that were away\n",
+        "frames   %llu triggers; %llu frames lost, %llu incomplete, %llu of cameras that were "
+        "away\n",
         status.at("mode").get<std::string>().c_str(), status.at("delay_ms").get<double>() / 1e3,
         status.at("history_ms").get<double>() / 1e3, view, status.at("cameras").size(),
         substitute.c_str(), status.at("target_m").at(0).get<double>(),
