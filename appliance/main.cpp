@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <malloc.h>
 #include <systemd/sd-daemon.h>
 
 #include "appliance/appliance.h"
@@ -221,9 +222,18 @@ std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
   return recorder ? recorder->finish() : std::expected<void, std::string>{};
 }
 
+/// Large buffers go back to the system. Left alone, glibc takes the first one that is freed as a
+/// sign to keep such in the heap of every thread that asks again: the heaps of all threads that
+/// open cameras would grow, once each, whenever cables are pulled for the first time.
+void returnLargeBuffers() {
+  constexpr int kLargeBytes = 128 * 1024;
+  static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargeBytes));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  returnLargeBuffers();  // before any thread
   Options options;
   CLI::App app{"kagamid: fires the cameras, keeps the last seconds, shows the athlete"};
   app.add_option("--config", options.config_file, "Configuration file")->capture_default_str();
