@@ -81,7 +81,7 @@ std::vector<CameraStatus> CameraArray::statuses() const {
                         .reason = reasonOf(health, supervisors_[i]->silentFor(now)),
                         .frames_lost = counts.missing,
                         .frames_away = counts.away,
-                        .frames_incomplete = counts.incomplete + counts.wrong_size});
+                        .frames_incomplete = counts.damaged()});
   }
   return statuses;
 }

@@ -123,7 +123,7 @@ CameraFacts CameraSupervisor::facts() const {
   const CollectorCounts counts = collector_.counts();
   CameraFacts facts{.fired = edges_.newest(),
                     .stored = frames_.newest(),
-                    .damaged = counts.incomplete + counts.wrong_size,
+                    .damaged = counts.damaged(),
                     .extra = counts.unattributed};
   if (facts.fired <= kTriggersOnTheWire) return facts;
   const std::uint64_t newest = facts.fired - kTriggersOnTheWire;

@@ -40,6 +40,8 @@ struct CollectorCounts {
   std::uint64_t unattributed = 0;  ///< the sum of the last three
   rt::Timestamp last_stored;
 
+  /// Came, but not whole or not of the profile's size.
+  [[nodiscard]] std::uint64_t damaged() const { return incomplete + wrong_size; }
   /// Of several cameras: the newest counts as last_stored.
   CollectorCounts& operator+=(const CollectorCounts& other);
 };

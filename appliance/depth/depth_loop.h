@@ -16,7 +16,7 @@ struct DepthReport {
   double rate_hz = 0;  ///< of the pictures of the last seconds
 };
 
-/// "streaming, 30.0 Hz, 640x480 with colour; 0 lost", in one line.
+/// "streaming: NAME, 640x480 with colour, 30.0 Hz; 900 pictures, 0 lost", in one line.
 [[nodiscard]] std::string depthText(const DepthReport& report);
 
 /// What is less than asked for, for a person; empty: nothing.
