@@ -9,6 +9,7 @@
 #include "appliance/capture/genlock_text.h"
 #include "appliance/depth/depth_settings.h"
 #include "appliance/device_settings.h"
+#include "appliance/panel/panel_settings.h"
 #include "appliance/process_facts.h"
 #include "appliance/trigger_wiring.h"
 #include "hal/backends.h"
@@ -121,13 +122,7 @@ std::expected<void, std::string> Appliance::openDevices() {
 void Appliance::openPanel() {
   const Config::Panel& config = config_.panel;
   if (config.backend == "none") return;
-  auto panel = hal::openButtonPanel(config.backend,
-                                    {.script = config.script,
-                                     .button_prefix = config.button_prefix,
-                                     .lamp_prefix = config.lamp_prefix,
-                                     .active_low = config.active_low,
-                                     .debounce = std::chrono::milliseconds(config.debounce_ms)},
-                                    degraded_);
+  auto panel = hal::openButtonPanel(config.backend, panelSettings(config), degraded_);
   if (!panel) {
     degraded_.push_back(panel.error() + "; the box runs without its panel");
     return;
@@ -325,7 +320,7 @@ Status Appliance::status() const {
   const CollectorCounts counts = cameras_->counts();
   status.frames_lost = counts.missing;
   status.frames_away = counts.away;
-  status.frames_incomplete = counts.incomplete + counts.wrong_size;
+  status.frames_incomplete = counts.damaged();
   return status;
 }
 
@@ -363,7 +358,7 @@ SummaryRecord Appliance::summary() const {
           .memory_bytes = residentBytes(),
           .frames_lost = counts.missing,
           .frames_away = counts.away,
-          .frames_incomplete = counts.incomplete + counts.wrong_size,
+          .frames_incomplete = counts.damaged(),
           .frames_unattributed = counts.unattributed,
           .pictures_skipped = render_loop_->status().skipped};
 }

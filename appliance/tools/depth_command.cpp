@@ -16,6 +16,7 @@
 #include "appliance/depth/depth_settings.h"
 #include "appliance/depth/lamp_finder.h"
 #include "appliance/depth/latency.h"
+#include "appliance/panel/panel_settings.h"
 #include "appliance/tools/commands.h"
 #include "hal/backends.h"
 
@@ -76,13 +77,7 @@ void watch(const Options& options) {
 class BlinkingLamp {
  public:
   explicit BlinkingLamp(const Config::Panel& config) {
-    auto panel = hal::openButtonPanel(config.backend,
-                                      {.script = config.script,
-                                       .button_prefix = config.button_prefix,
-                                       .lamp_prefix = config.lamp_prefix,
-                                       .active_low = config.active_low,
-                                       .debounce = std::chrono::milliseconds(config.debounce_ms)},
-                                      notes_);
+    auto panel = hal::openButtonPanel(config.backend, panelSettings(config), notes_);
     if (!panel) {
       fail(panel.error() +
            ": the latency is measured with the lamp of a panel, or with "
