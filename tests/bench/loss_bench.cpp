@@ -23,7 +23,8 @@
 
 // What lost packets cost: twenty cameras at 40 Hz, first on a whole network, then on one that loses
 // 1 % of all stream packets, resent ones too. How many frames stay incomplete, and how much later
-// the others are complete.
+// the others are complete. Where this machine stood still an edge left late, and cameras that were
+// not ready for it or for the next one sent nothing: those frames are left out and counted.
 
 namespace {
 
@@ -53,23 +54,19 @@ bool command(const std::string& address, const std::string& command) {
 class Recorder final : public hal::FrameSink {
  public:
   Recorder(const appliance::EdgeBoard& edges, std::uint32_t first_free, std::uint32_t slots,
-           std::size_t frames)
-      : edges_(edges) {
+           std::size_t triggers)
+      : edges_(edges), came_(triggers) {
     for (std::uint32_t slot = first_free; slot < slots; ++slot) free_.push_back(slot);
-    delays_ms_.reserve(frames);
   }
 
   std::uint32_t onFrame(const hal::FrameArrival& arrival) noexcept override {
     std::uint64_t trigger = edges_.newest();
     while (trigger > 1 && edges_.edge(trigger) > arrival.first_packet) --trigger;
     const std::scoped_lock lock(mutex_);
-    if (counting_ && arrival.status != hal::FrameStatus::kAborted) {
-      const std::chrono::duration<double, std::milli> delay =
-          arrival.last_packet - edges_.edge(trigger);
-      if (arrival.status == hal::FrameStatus::kComplete)
-        delays_ms_.push_back(delay.count());
-      else
-        ++incomplete_;
+    if (trigger < came_.size() && arrival.status != hal::FrameStatus::kAborted) {
+      came_[trigger] = {.came = true,
+                        .whole = arrival.status == hal::FrameStatus::kComplete,
+                        .delay = arrival.last_packet - edges_.edge(trigger)};
     }
     free_.push_back(arrival.slot);
     const std::uint32_t next = free_.front();
@@ -77,27 +74,48 @@ class Recorder final : public hal::FrameSink {
     return next;
   }
 
-  void count(bool on) {
-    const std::scoped_lock lock(mutex_);
-    counting_ = on;
-  }
-  [[nodiscard]] const std::vector<double>& delays_ms() const { return delays_ms_; }
-  [[nodiscard]] std::uint64_t incomplete() const { return incomplete_; }
+  struct Frame {
+    bool came = false;
+    bool whole = false;
+    rt::Nanoseconds delay{};  ///< from edge to last packet
+  };
+  /// By trigger. Only when the camera is stopped.
+  [[nodiscard]] const std::vector<Frame>& came() const { return came_; }
 
  private:
   const appliance::EdgeBoard& edges_;
   std::mutex mutex_;
-  bool counting_ = false;
   std::vector<std::uint32_t> free_;
-  std::vector<double> delays_ms_;  // complete frames
-  std::uint64_t incomplete_ = 0;
+  std::vector<Frame> came_;
 };
 
 struct LossRound {
-  std::vector<double> delays_ms;
+  std::vector<double> delays_ms;  ///< of whole frames
   double incomplete = 0;
-  double missing = 0;  ///< no packet of them came
+  double missing = 0;     ///< no packet of them came
+  double late_edges = 0;  ///< likewise, but cameras were not ready for a late edge or the one after
 };
+
+/// Of every frame of the triggers (@p begin, @p end], whose edges @p edges holds by trigger.
+LossRound judge(const std::vector<std::unique_ptr<Recorder>>& recorders,
+                const std::vector<rt::Timestamp>& edges, std::uint64_t begin, std::uint64_t end,
+                rt::Nanoseconds period) {
+  constexpr rt::Nanoseconds kLate = 2ms;
+  LossRound round;
+  for (std::uint64_t trigger = begin + 1; trigger <= end; ++trigger) {
+    const rt::Nanoseconds spacing = edges[trigger] - edges[trigger - 1];
+    const bool late = std::chrono::abs(spacing - period) >= kLate;
+    for (const auto& recorder : recorders) {
+      const Recorder::Frame& frame = recorder->came()[trigger];
+      if (frame.whole) {
+        round.delays_ms.push_back(static_cast<double>(frame.delay.count()) * 1e-6);
+      } else {
+        ++(frame.came ? round.incomplete : late ? round.late_edges : round.missing);
+      }
+    }
+  }
+  return round;
+}
 
 std::expected<LossRound, std::string> runLossRound(const bench::ReceptionSetup& setup,
                                                    std::chrono::milliseconds length) {
@@ -109,7 +127,7 @@ std::expected<LossRound, std::string> runLossRound(const bench::ReceptionSetup& 
   std::vector<std::byte> memory(setup.frameBytes() * slots * kCameras);
   std::vector<std::uint32_t> first;
   for (std::uint32_t slot = 0; slot < in_flight; ++slot) first.push_back(slot);
-  const auto expected = static_cast<std::size_t>(length / setup.period) + 100;
+  std::vector<rt::Timestamp> edges(static_cast<std::size_t>(length / setup.period) + 100);
 
   std::vector<std::unique_ptr<Recorder>> recorders;
   std::vector<std::unique_ptr<hal::Camera>> cameras;
@@ -121,7 +139,7 @@ std::expected<LossRound, std::string> runLossRound(const bench::ReceptionSetup& 
     }
     auto camera = hal::openCamera("aravis", setup.cameras[i], setup.receive);
     if (!camera) return std::unexpected(camera.error());
-    recorders.push_back(std::make_unique<Recorder>(board->edges, in_flight, slots, expected));
+    recorders.push_back(std::make_unique<Recorder>(board->edges, in_flight, slots, edges.size()));
     cameras.push_back(std::move(*camera));
     if (auto started = cameras.back()->start(*recorders.back(), spans, first); !started) {
       return std::unexpected(started.error());
@@ -135,24 +153,23 @@ std::expected<LossRound, std::string> runLossRound(const bench::ReceptionSetup& 
   if (!trigger) return std::unexpected("the trigger thread does not start");
   std::this_thread::sleep_for(20 * setup.period);
   const std::uint64_t begin = board->edges.newest();
-  for (const auto& recorder : recorders) recorder->count(true);
-  std::this_thread::sleep_for(length);
+  std::uint64_t end = begin;
+  const auto keepEdges = [&] {  // the board keeps the last ones only
+    for (std::uint64_t i = std::max<std::uint64_t>(end, 1); i <= board->edges.newest(); ++i) {
+      if (i < edges.size()) edges[i] = board->edges.edge(i);
+    }
+    end = std::min<std::uint64_t>(board->edges.newest(), edges.size() - 1);
+  };
+  for (auto left = length; left > 0ms; left -= 1000ms) {
+    keepEdges();
+    std::this_thread::sleep_for(std::min(left, 1000ms));
+  }
   trigger->requestStop();
   trigger->join();
-  const std::uint64_t end = board->edges.newest();
+  keepEdges();
   std::this_thread::sleep_for(4 * setup.period);  // frames on the wire belong to this round
   for (const auto& camera : cameras) camera->stop();
-
-  LossRound round;
-  for (const auto& recorder : recorders) {
-    round.delays_ms.insert(round.delays_ms.end(), recorder->delays_ms().begin(),
-                           recorder->delays_ms().end());
-    round.incomplete += static_cast<double>(recorder->incomplete());
-  }
-  // Frames of the trigger before the first one counted may count or not.
-  const double frames = static_cast<double>(round.delays_ms.size()) + round.incomplete;
-  round.missing = std::max(0.0, static_cast<double>((end - begin) * kCameras) - frames);
-  return round;
+  return judge(recorders, edges, begin, end, setup.period);
 }
 
 }  // namespace
@@ -198,6 +215,10 @@ int main(int argc, char** argv) {
         .rival = {.name = "without loss", .values = {whole->incomplete + whole->missing}},
         .bar = bench::Bar{bench::Bar::Kind::kOursAtMost, 0},
         .not_judged = not_judged},
+       {.what = "not sent: this machine stood still",
+        .unit = "",
+        .ours = {.name = "kagami", .values = {lossy->late_edges}},
+        .rival = {.name = "without loss", .values = {whole->late_edges}}},
        {.what = "trigger to last packet, 1 % loss",
         .unit = "ms",
         .ours = {.name = "kagami", .values = lossy->delays_ms},
