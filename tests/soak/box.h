@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <expected>
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "appliance/control/control_client.h"
+#include "rt/clock.h"
 #include "tests/soak/fault_port.h"
 #include "tests/support/child_process.h"
 
@@ -19,6 +21,10 @@ struct BoxOptions {
   std::string size = "1280x1024";
   double rate_hz = 40;
   std::uint64_t seed = 1;
+  /// From one trigger to the next.
+  [[nodiscard]] rt::Nanoseconds period() const {
+    return rt::Nanoseconds(std::llround(1e9 / rate_hz));
+  }
 };
 
 /// The real programs, end to end: emulated cameras, a message bus of its own, and the daemon on a

@@ -11,9 +11,15 @@ double seconds(rt::Nanoseconds time) {
   return static_cast<double>(time.count()) * 1e-9;
 }
 
+/// What a standstill of this machine may hide: a fault's own loss.
+LossCause withoutStandstill(LossCause cause) {
+  if (cause == LossCause::kLateEdge) return LossCause::kNotSent;
+  return cause == LossCause::kHeldUp ? LossCause::kIncomplete : cause;
+}
+
 bool explains(const FaultOutcome& outcome, const LostFrame& lost, rt::Nanoseconds period) {
   const Fault& fault = outcome.fault;
-  const LossCause cause = lost.cause == LossCause::kLateEdge ? LossCause::kNotSent : lost.cause;
+  const LossCause cause = withoutStandstill(lost.cause);
   return fault.camera == lost.camera && fault.kind->may_lose.has(cause) &&
          lost.edge >= fault.from - 2 * period && lost.edge <= fault.until + fault.kind->recovery &&
          outcome.lostFrames() < fault.kind->most_frames;
@@ -49,8 +55,8 @@ Judgement judge(std::span<const LostFrame> lost, std::span<const Fault> faults,
       }
     }
     if (explained == nullptr) {
-      const bool late = frame.cause == LossCause::kLateEdge;
-      (late ? judgement.late_edges : judgement.unexplained).push_back(frame);
+      const bool stood_still = withoutStandstill(frame.cause) != frame.cause;
+      (stood_still ? judgement.stood_still : judgement.unexplained).push_back(frame);
       continue;
     }
     ++explained->lost[static_cast<std::size_t>(frame.cause)];

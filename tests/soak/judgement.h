@@ -30,8 +30,7 @@ struct FaultOutcome {
 
 struct Judgement {
   std::vector<FaultOutcome> faults;
-  std::vector<LostFrame>
-      late_edges;  ///< lost because this machine stood still, on no faulty camera
+  std::vector<LostFrame> stood_still;  ///< by late edges or held up, on no faulty camera
   std::vector<LostFrame> unexplained;
 };
 

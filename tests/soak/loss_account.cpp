@@ -17,7 +17,7 @@ std::uint64_t onWire(std::uint64_t frame_id) {
 
 std::string_view nameOf(LossCause cause) {
   constexpr std::array<std::string_view, kLossCauses> kNames = {
-      "not sent", "late edge", "never came", "incomplete", "wrong size", "unattributed"};
+      "not sent", "late edge", "never came", "incomplete", "held up", "wrong size", "unattributed"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 
@@ -68,7 +68,7 @@ void LossAccount::judge(const appliance::TriggerRecord& trigger) {
     const auto sent = sentFor(camera, trigger);
     const auto stored = storedFor(camera, trigger.trigger);
     if (stored) {
-      if (sent != stored && wasTakenElsewhere(camera, trigger, *stored)) {
+      if ((!sent || sent->frame_id != *stored) && wasTakenElsewhere(camera, trigger, *stored)) {
         misattributed_.push_back({i, trigger.trigger, edge});
       }
       if (settled) ++frames_stored_;
@@ -85,17 +85,17 @@ void LossAccount::judge(const appliance::TriggerRecord& trigger) {
 
 /// The stamp that the camera saw on the wire was taken between the trace's two instants. Frames
 /// that no edge started pass by.
-std::optional<std::uint64_t> LossAccount::sentFor(Camera& camera,
-                                                  const appliance::TriggerRecord& trigger) {
+std::optional<appliance::SentFrame> LossAccount::sentFor(Camera& camera,
+                                                         const appliance::TriggerRecord& trigger) {
   while (!camera.sent.empty() && camera.sent.front().trigger_edge < trigger.trigger_edge_before) {
     pass(camera);
   }
   if (camera.sent.empty() || camera.sent.front().trigger_edge > trigger.trigger_edge_after) {
     return std::nullopt;
   }
-  const std::uint64_t wire_id = camera.sent.front().frame_id;
+  const appliance::SentFrame sent = camera.sent.front();
   pass(camera);
-  return wire_id;
+  return sent;
 }
 
 void LossAccount::pass(Camera& camera) {
@@ -127,14 +127,15 @@ std::optional<std::uint64_t> LossAccount::storedFor(Camera& camera, std::uint64_
 }
 
 LossCause LossAccount::causeOf(Camera& camera, const appliance::TriggerRecord& trigger,
-                               std::uint64_t wire_id) {
+                               const appliance::SentFrame& sent) const {
   auto& refused = camera.refused;
   while (!refused.empty() && refused.front().at < trigger.trigger_edge_before) refused.pop_front();
-  const auto found = std::ranges::find(refused, wire_id, &Arrived::wire_id);
+  const auto found = std::ranges::find(refused, sent.frame_id, &Arrived::wire_id);
   if (found == refused.end()) return LossCause::kNeverCame;
   switch (found->status) {
     case hal::FrameStatus::kIncomplete:
-      return LossCause::kIncomplete;
+      return sent.last_packet - sent.first_packet >= held_up_ ? LossCause::kHeldUp
+                                                              : LossCause::kIncomplete;
     case hal::FrameStatus::kWrongSize:
       return LossCause::kWrongSize;
     default:

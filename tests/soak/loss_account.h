@@ -19,10 +19,11 @@ enum class LossCause : std::uint8_t {
   kLateEdge,    ///< likewise, and its edge or the one before came late: the cameras were not ready
   kNeverCame,   ///< sent, but the box has no record of it
   kIncomplete,  ///< came with packets missing
+  kHeldUp,      ///< likewise, and the emulator itself took longer for it than the box waits
   kWrongSize,   ///< came in another size than configured
   kUnattributed,  ///< came, but near no trigger edge, or aborted
 };
-inline constexpr std::size_t kLossCauses = 6;
+inline constexpr std::size_t kLossCauses = 7;
 [[nodiscard]] std::string_view nameOf(LossCause cause);
 
 struct LostFrame {
@@ -45,7 +46,9 @@ struct MisattributedFrame {
 /// Memory   What the two streams have not both passed yet, and the lost frames.
 class LossAccount {
  public:
-  explicit LossAccount(std::uint32_t cameras) : cameras_(cameras) {}
+  /// @p period: between triggers.
+  LossAccount(std::uint32_t cameras, rt::Nanoseconds period)
+      : held_up_(period * 4 / 5), cameras_(cameras) {}
 
   /// Each kind in the order of its file.
   void triggerFired(const appliance::TriggerRecord& trigger);
@@ -90,16 +93,17 @@ class LossAccount {
   void judgePassed();
   static void pass(Camera& camera);
   void judge(const appliance::TriggerRecord& trigger);
-  [[nodiscard]] static std::optional<std::uint64_t> sentFor(
+  [[nodiscard]] static std::optional<appliance::SentFrame> sentFor(
       Camera& camera, const appliance::TriggerRecord& trigger);
   [[nodiscard]] static bool wasTakenElsewhere(const Camera& camera,
                                               const appliance::TriggerRecord& trigger,
                                               std::uint64_t wire_id);
   [[nodiscard]] static std::optional<std::uint64_t> storedFor(Camera& camera,
                                                               std::uint64_t trigger);
-  [[nodiscard]] static LossCause causeOf(Camera& camera, const appliance::TriggerRecord& trigger,
-                                         std::uint64_t wire_id);
+  [[nodiscard]] LossCause causeOf(Camera& camera, const appliance::TriggerRecord& trigger,
+                                  const appliance::SentFrame& sent) const;
 
+  const rt::Nanoseconds held_up_;  // [resend] frame_retention_us' default
   std::vector<Camera> cameras_;
   std::deque<appliance::TriggerRecord> triggers_;
   std::optional<rt::Timestamp> first_edge_;

@@ -51,7 +51,7 @@ struct Options {
 ///
 /// Threads  The streams' threads write, main reads: under the lock.
 struct Told {
-  explicit Told(std::uint32_t cameras) : account(cameras) {}
+  Told(std::uint32_t cameras, rt::Nanoseconds period) : account(cameras, period) {}
   std::mutex mutex;
   LossAccount account;
   std::optional<appliance::SummaryRecord> summary;
@@ -90,7 +90,7 @@ class Run {
       : options_(options),
         box_(box),
         told_(told),
-        period_(std::llround(1e9 / options.box.rate_hz)),
+        period_(options.box.period()),
         every_(std::llround(options.fault_every_s * 1e9)),
         plan_(options.faults, options.box.cameras, every_, options.box.seed) {}
 
@@ -271,9 +271,9 @@ std::vector<std::string> Run::conclude() {
       static_cast<unsigned long long>(account.framesStored()), account.lost().size(),
       judgement.unexplained.size(), static_cast<unsigned long long>(account.lostWhileSettling()),
       static_cast<long long>(LossAccount::kSettling / 1s));
-  if (!judgement.late_edges.empty())
-    std::printf("%zu of them because an edge was over %lld ms late: this machine stood still\n",
-                judgement.late_edges.size(), static_cast<long long>(LossAccount::kLate / 1ms));
+  if (!judgement.stood_still.empty())
+    std::printf("%zu of them because this machine stood still: a late edge, or sending held up\n",
+                judgement.stood_still.size());
   if (!growth)
     std::printf("memory is not judged: that takes every fault once (%zu x %g s) and %lld s more\n",
                 options_.faults.size() + 1, options_.fault_every_s,
@@ -317,7 +317,7 @@ void Run::noteGrowth(const Growth& growth) {
 
 /// Errors   One line; the box did not start.
 std::expected<std::vector<std::string>, std::string> soak(const Options& options) {
-  Told told(options.box.cameras);
+  Told told(options.box.cameras, options.box.period());
   LineStream trace(Box::tracePath(options.box.folder),
                    [&](std::string_view line) { takeTraceLine(told, line); });
   LineStream wire(Box::wirePath(options.box.folder),

@@ -31,11 +31,12 @@ rt::Timestamp edgeOf(std::uint64_t trigger) {
 struct Simulation {
   std::uint64_t triggers = 400;
   std::function<bool(std::uint32_t, std::uint64_t)> sends = [](auto, auto) { return true; };
+  std::function<rt::Nanoseconds(std::uint64_t)> sending = [](auto) { return 11ms; };
   std::function<std::optional<appliance::FrameRecord>(appliance::FrameRecord)> arrives =
       [](const appliance::FrameRecord& frame) { return frame; };
 
   [[nodiscard]] LossAccount run() const {
-    LossAccount account(2);
+    LossAccount account(2, kPeriod);
     for (std::uint64_t t = 1; t <= triggers; ++t) {
       const rt::Timestamp edge = edgeOf(t);
       account.triggerFired({.trigger = t,
@@ -50,7 +51,7 @@ struct Simulation {
                            .trigger_edge = edge + 5us,
                            .exposure_end = edge + 1ms,
                            .first_packet = edge + 1ms,
-                           .last_packet = edge + 12ms});
+                           .last_packet = edge + 1ms + sending(t)});
         const auto frame = arrives({.camera = camera,
                                     .status = hal::FrameStatus::kComplete,
                                     .trigger = t,
@@ -106,8 +107,26 @@ TEST(LossAccount, NamesWhatTheBoxSaidOfAFrameThatCame) {
   EXPECT_EQ(account.lost()[2].cause, LossCause::kUnattributed);
 }
 
+TEST(LossAccount, NamesAFrameThatTheEmulatorItselfHeldUp) {
+  Simulation simulation;
+  simulation.sending = [](std::uint64_t t) { return t == 200 ? 20ms : 11ms; };
+  simulation.arrives = [](appliance::FrameRecord frame) {
+    const bool lost = frame.trigger == 200 || frame.trigger == 201;
+    if (lost) frame.status = hal::FrameStatus::kIncomplete;
+    if (lost) frame.trigger = 0;
+    return std::optional(frame);
+  };
+  const LossAccount account = simulation.run();
+  ASSERT_THAT(account.lost(), SizeIs(4));
+  EXPECT_EQ(account.lost()[0].cause, LossCause::kHeldUp);
+  EXPECT_EQ(account.lost()[2].cause, LossCause::kIncomplete);
+  const Judgement judgement = judge(account.lost(), {}, kPeriod);
+  EXPECT_THAT(judgement.stood_still, SizeIs(2));
+  EXPECT_THAT(judgement.unexplained, SizeIs(2));
+}
+
 TEST(LossAccount, TakesAFrameOfItsOwnForAnEdgeThatItMet) {
-  LossAccount account(1);
+  LossAccount account(1, kPeriod);
   for (std::uint64_t t = 1; t <= 400; ++t) {
     const rt::Timestamp edge = edgeOf(t);
     account.triggerFired({.trigger = t,
