@@ -11,6 +11,7 @@
 #include "hal/emulated/studio/hall_size.h"
 #include "hal/emulated/studio/lens_glsl.h"
 #include "hal/emulated/studio/people_glsl.h"
+#include "hal/emulated/studio/shadow_glsl.h"
 
 namespace emulator::studio {
 namespace {
