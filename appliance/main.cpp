@@ -26,9 +26,9 @@
 #include "appliance/network/site_plan.h"
 #include "appliance/picture_recorder.h"
 #include "appliance/startup_checks.h"
-#include "appliance/stop_signals.h"
 #include "appliance/trigger_wiring.h"
 #include "rt/clock.h"
+#include "rt/stop_signals.h"
 #include "ui-kms/draw_workers.h"
 #include "ui-kms/kms_display.h"
 #include "ui-kms/offscreen_display.h"
@@ -153,7 +153,7 @@ std::unique_ptr<ControlServer> openControl(const Config::Control& config, Applia
 }
 
 /// Until a stop signal: answers the control interface, watches the cameras, feeds the watchdog.
-void serve(Appliance& running, const Config::Control& config, StopSignals& stop) {
+void serve(Appliance& running, const Config::Control& config, rt::StopSignals& stop) {
   constexpr rt::Nanoseconds kTick = std::chrono::milliseconds(100);
   auto control = openControl(config, running);
   CameraWatch watch;
@@ -191,7 +191,7 @@ std::expected<void, std::string> releaseLines(const Options& options) {
 }
 
 /// Errors   One line; nothing is left running.
-std::expected<void, std::string> run(const Site& site, StopSignals& stop) {
+std::expected<void, std::string> run(const Site& site, rt::StopSignals& stop) {
   const Config& config = site.config;
   const auto screen = makeScreen(config, site.rig);
   if (!screen) return std::unexpected(screen.error());
@@ -254,7 +254,7 @@ int main(int argc, char** argv) {
     if (!released) logError(released.error());
     return released ? EXIT_SUCCESS : EXIT_FAILURE;
   }
-  StopSignals stop;  // before any thread
+  rt::StopSignals stop;  // before any thread
   const auto site = loadSite(options);
   if (!site) {
     logError(site.error());

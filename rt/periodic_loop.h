@@ -69,14 +69,6 @@ class PeriodicSchedule {
     deadline_ += shift;
   }
 
-  /// Moves all coming deadlines the shorter way so that @p instant falls on the grid.
-  void setPhase(Timestamp instant) RT_SAFE {
-    Nanoseconds shift = (instant - deadline_) % period_;
-    if (shift > period_ / 2) shift -= period_;
-    if (shift < -period_ / 2) shift += period_;
-    nudge(shift);
-  }
-
  private:
   Timestamp deadline_;
   Nanoseconds period_;
@@ -95,7 +87,6 @@ void sleepUntil(Timestamp deadline) noexcept;
 ///     while (!stop.stop_requested()) {
 ///       const auto tick = loop.wait();
 ///       if (!tick) continue;  // given up, counted
-///       wake_latency.record(tick->lateness);
 ///       ...
 ///     }
 ///

@@ -7,8 +7,7 @@ namespace rt {
 
 /// What the world can do to us; our own bugs are assertions instead.
 enum class Errc : std::uint8_t {
-  kTimeout = 1,
-  kDeviceLost,
+  kDeviceLost = 1,
   kBusy,
   kUnsupported,
   kInvalidConfig,

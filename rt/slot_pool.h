@@ -125,19 +125,13 @@ class SlotPool {
   /// Retired, but pinned when last looked at.
   [[nodiscard]] std::size_t parkedSlots() const RT_SAFE { return parked_.size(); }
 
-  /// A slot to fill, the writer's alone until publish() or giveBack().
+  /// A slot to fill, the writer's alone until publish().
   [[nodiscard]] std::optional<std::uint32_t> tryAcquire() RT_SAFE {
     collectParked();
     if (free_.empty()) return std::nullopt;
     const std::uint32_t slot = free_.back();
     free_.pop_back();
     return slot;
-  }
-
-  /// Returns an acquired slot that was never published.
-  void giveBack(std::uint32_t slot) RT_SAFE {
-    assert(slot < size_ && states_[slot].isFree() && free_.size() < size_);
-    free_.push_back(slot);  // within the reserved capacity
   }
 
   /// Shows an acquired and filled slot to the readers under @p tag.

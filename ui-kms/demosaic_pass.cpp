@@ -73,13 +73,13 @@ Parity redAt(hal::PixelFormat format) {
 }  // namespace
 
 std::expected<DemosaicPass, std::string> DemosaicPass::create() {
-  auto program = makeProgram("demosaic", kVertex, kFragment);
+  auto program = gl::makeProgram("demosaic", kVertex, kFragment);
   if (!program) return std::unexpected(program.error());
   DemosaicPass pass;
   pass.program_ = std::move(*program);
-  pass.no_attributes_ = makeVertexArray();
-  pass.red_at_ = glGetUniformLocation(pass.program_.get(), "red_at");
-  pass.mono_ = glGetUniformLocation(pass.program_.get(), "mono");
+  pass.no_attributes_ = gl::makeVertexArray();
+  pass.red_at_ = uniform(pass.program_, "red_at");
+  pass.mono_ = uniform(pass.program_, "mono");
   return pass;
 }
 

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "hal/display.h"
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/objects.h"
+#include "ui-kms/render_target.h"
 
 namespace ui {
 
@@ -22,8 +23,8 @@ class DemosaicPass {
  private:
   DemosaicPass() = default;
 
-  GlProgram program_;
-  GlVertexArray no_attributes_;
+  gl::Program program_;
+  gl::VertexArray no_attributes_;
   GLint red_at_ = -1;
   GLint mono_ = -1;
 };

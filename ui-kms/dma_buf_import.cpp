@@ -86,7 +86,7 @@ DmaBufImport::DmaBufImport(void* display, const Functions& functions, bool names
       names_modifier_(names_modifier) {
   GLuint name = 0;
   glGenTextures(1, &name);
-  texture_ = GlTexture(name);
+  texture_ = gl::Texture(name);
 }
 
 DmaBufImport::~DmaBufImport() {

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "hal/display.h"
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/objects.h"
 
 namespace ui {
 
@@ -41,7 +41,7 @@ class DmaBufImport {
   void* display_;  // EGLDisplay: EGL's header stays out of ours
   std::unique_ptr<const Functions> functions_;
   bool names_modifier_;
-  GlTexture texture_;
+  gl::Texture texture_;
   std::map<Slot, void*> images_;  // EGLImage; none where the driver refused
 };
 

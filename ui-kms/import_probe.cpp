@@ -7,6 +7,7 @@
 
 #include "rt/dma_buf.h"
 #include "rt/memory.h"
+#include "ui-kms/render_target.h"
 
 namespace ui {
 namespace {

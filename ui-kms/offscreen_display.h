@@ -10,6 +10,7 @@
 #include "hal/display.h"
 #include "ui-kms/frame_pacer.h"
 #include "ui-kms/picture_source.h"
+#include "ui-kms/render_target.h"
 #include "ui-kms/renderer.h"
 #include "ui-kms/swap_chain.h"
 

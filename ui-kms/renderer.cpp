@@ -12,7 +12,7 @@ namespace ui {
 
 std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
     const RendererConfig& config) {
-  auto context = EglContext::create(config.software_threads, config.gbm);
+  auto context = gl::Context::create(config.software_threads, config.gbm);
   if (!context) return std::unexpected(context.error());
   std::unique_ptr<Renderer> renderer(new Renderer(std::move(*context)));
   DemosaicSite site = config.demosaic;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "hal/display.h"
-#include "ui-kms/egl_context.h"
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/context.h"
+#include "ui-kms/render_target.h"
 #include "ui-kms/source_texture.h"
 #include "ui-kms/status_line_pass.h"
 #include "ui-kms/warp_pass.h"
@@ -37,8 +37,8 @@ class Renderer {
   [[nodiscard]] static std::expected<std::unique_ptr<Renderer>, std::string> create(
       const RendererConfig& config);
 
-  [[nodiscard]] EglContext& context() { return *context_; }
-  [[nodiscard]] const EglContext& context() const { return *context_; }
+  [[nodiscard]] gl::Context& context() { return *context_; }
+  [[nodiscard]] const gl::Context& context() const { return *context_; }
   /// Why frames are uploaded even where they come as dma-bufs; empty where those are read in place.
   [[nodiscard]] const std::string& uploadReason() const { return source_->uploadReason(); }
   /// Why there is no status line; empty where there is one.
@@ -55,12 +55,12 @@ class Renderer {
                            const hal::StatusLine& status, rt::UniqueFd* fence = nullptr);
 
  private:
-  explicit Renderer(std::unique_ptr<EglContext> context) : context_(std::move(context)) {}
+  explicit Renderer(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {}
   void warmUp(const RendererConfig& config);
 
   std::string font_path_;
 
-  std::unique_ptr<EglContext> context_;  // first, so that it outlives all GL objects
+  std::unique_ptr<gl::Context> context_;  // first, so that it outlives all GL objects
   std::optional<SourceTexture> source_;
   std::optional<WarpPass> warp_;
   std::optional<StatusLinePass> status_;

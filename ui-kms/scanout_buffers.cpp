@@ -44,7 +44,7 @@ void ScanoutBuffers::CloseImage::operator()(void* image) const {
 }
 
 std::expected<ScanoutBuffers, std::string> ScanoutBuffers::create(
-    int fd, gbm_device* gbm, const EglContext& context, ScanoutPath path, std::uint32_t width_px,
+    int fd, gbm_device* gbm, const gl::Context& context, ScanoutPath path, std::uint32_t width_px,
     std::uint32_t height_px, std::uint32_t count) {
   ScanoutBuffers made;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -57,7 +57,7 @@ std::expected<ScanoutBuffers, std::string> ScanoutBuffers::create(
 }
 
 std::expected<ScanoutBuffers::Buffer, std::string> ScanoutBuffers::makeDirect(
-    int fd, gbm_device* gbm, const EglContext& context, std::uint32_t width_px,
+    int fd, gbm_device* gbm, const gl::Context& context, std::uint32_t width_px,
     std::uint32_t height_px) {
   Buffer buffer;
   buffer.bo.reset(gbm_bo_create(gbm, width_px, height_px, GBM_FORMAT_XRGB8888,
@@ -79,12 +79,12 @@ std::expected<ScanoutBuffers::Buffer, std::string> ScanoutBuffers::makeDirect(
   if (image == EGL_NO_IMAGE_KHR) return failed("no import of GBM buffers", "EGL refused it");
   buffer.image = {image, CloseImage{context.display()}};
 
-  buffer.renderbuffer = makeRenderbuffer();
+  buffer.renderbuffer = gl::makeRenderbuffer();
   glBindRenderbuffer(GL_RENDERBUFFER, buffer.renderbuffer.get());
   bind_image(GL_RENDERBUFFER, image);
   buffer.target.width_px = width_px;
   buffer.target.height_px = height_px;
-  buffer.target.framebuffer = makeFramebuffer();
+  buffer.target.framebuffer = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, buffer.target.framebuffer.get());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                             buffer.renderbuffer.get());

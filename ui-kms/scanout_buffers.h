@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "ui-kms/egl_context.h"
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/context.h"
+#include "hal/gl/objects.h"
 #include "ui-kms/kms/framebuffer.h"
+#include "ui-kms/render_target.h"
 
 struct gbm_device;
 struct gbm_bo;
@@ -30,7 +31,7 @@ class ScanoutBuffers {
   /// @p gbm: of the card @p fd, for kDirect; both outlive the buffers.
   /// Errors: one line.
   [[nodiscard]] static std::expected<ScanoutBuffers, std::string> create(
-      int fd, gbm_device* gbm, const EglContext& context, ScanoutPath path, std::uint32_t width_px,
+      int fd, gbm_device* gbm, const gl::Context& context, ScanoutPath path, std::uint32_t width_px,
       std::uint32_t height_px, std::uint32_t count);
 
   [[nodiscard]] std::uint32_t widthPx() const { return buffers_.front().target.width_px; }
@@ -58,11 +59,11 @@ class ScanoutBuffers {
     kms::DumbBuffer dumb;
     kms::Framebuffer framebuffer;
     std::unique_ptr<void, CloseImage> image;
-    GlRenderbuffer renderbuffer;
+    gl::Renderbuffer renderbuffer;
     RenderTarget target;
   };
   [[nodiscard]] static std::expected<Buffer, std::string> makeDirect(int fd, gbm_device* gbm,
-                                                                     const EglContext& context,
+                                                                     const gl::Context& context,
                                                                      std::uint32_t width_px,
                                                                      std::uint32_t height_px);
   [[nodiscard]] static std::expected<Buffer, std::string> makeCopied(int fd, std::uint32_t width_px,

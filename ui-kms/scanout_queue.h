@@ -1,14 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "hal/display.h"
 #include "rt/clock.h"
 #include "rt/result.h"
-#include "ui-kms/swap_chain.h"
+#include "ui-kms/buffer_states.h"
+#include "ui-kms/flip_list.h"
 
 namespace ui {
 
@@ -17,27 +16,26 @@ namespace ui {
 /// picture may be committed while another is pending: it is queued here, and goes to the kernel
 /// when that one's flip is told. It is then up to one vblank older when it comes on screen.
 ///
-/// Memory   Storage is made by the constructor. Flips that nobody takes are kept up to
-///          kFlipsKept; then the oldest is overwritten.
+/// Memory   Storage is made by the constructor. Flips that nobody takes stay in a FlipList.
 class ScanoutQueue {
  public:
-  static constexpr std::size_t kFlipsKept = 64;
-
   /// @p depth: 1 or 2, pictures on their way to the screen.
   explicit ScanoutQueue(std::uint32_t depth) : depth_(depth), states_(depth + 2) {}
 
-  [[nodiscard]] std::uint32_t buffers() const { return static_cast<std::uint32_t>(states_.size()); }
+  [[nodiscard]] std::uint32_t buffers() const { return states_.size(); }
   [[nodiscard]] BufferState state(std::uint32_t buffer) const { return states_[buffer]; }
 
   /// The buffer to draw into: the one drawn but not committed, or a free one.
   /// kBusy: all of them are on their way or on screen.
-  [[nodiscard]] rt::Result<std::uint32_t> tryBeginDraw() const;
+  [[nodiscard]] rt::Result<std::uint32_t> tryBeginDraw() const { return states_.tryBeginDraw(); }
   void finishDraw(std::uint32_t buffer);
 
   /// The drawn buffer, which waits for its commit.
-  [[nodiscard]] std::optional<std::uint32_t> drawn() const { return find(BufferState::kDrawn); }
-  [[nodiscard]] bool pending() const { return find(BufferState::kPending).has_value(); }
-  [[nodiscard]] bool queued() const { return find(BufferState::kQueued).has_value(); }
+  [[nodiscard]] std::optional<std::uint32_t> drawn() const {
+    return states_.find(BufferState::kDrawn);
+  }
+  [[nodiscard]] bool pending() const { return states_.find(BufferState::kPending).has_value(); }
+  [[nodiscard]] bool queued() const { return states_.find(BufferState::kQueued).has_value(); }
   /// Whether a commit would be taken now.
   [[nodiscard]] bool takesCommit() const;
 
@@ -67,19 +65,16 @@ class ScanoutQueue {
   [[nodiscard]] std::optional<hal::PageFlip> committedFlip() const { return committed_flip_; }
 
  private:
-  [[nodiscard]] std::optional<std::uint32_t> find(BufferState wanted) const;
   void commit(std::uint32_t buffer);
 
   std::uint32_t depth_;
-  std::vector<BufferState> states_;
+  BufferStates states_;
   std::uint64_t pending_serial_ = 0;
   std::uint64_t pending_picture_ = 0;
   std::uint64_t queued_picture_ = 0;
   std::optional<std::uint32_t> committed_;
   std::optional<hal::PageFlip> committed_flip_;
-  std::array<hal::PageFlip, kFlipsKept> flips_{};
-  std::size_t first_flip_ = 0;
-  std::size_t flip_count_ = 0;
+  FlipList flips_;
 };
 
 }  // namespace ui

@@ -36,20 +36,20 @@ SourceTexture::Storage& SourceTexture::storageFor(std::uint32_t width_px, std::u
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_MIRRORED_REPEAT);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_MIRRORED_REPEAT);
   if (site_ == DemosaicSite::kGpu) {
-    storage.mosaic = makeTexture(GL_R8, width_px, height_px, GL_NEAREST, GL_CLAMP_TO_EDGE);
+    storage.mosaic = gl::makeTexture(GL_R8, width_px, height_px, GL_NEAREST, GL_CLAMP_TO_EDGE);
   } else {
     storage.rgba.resize(std::size_t{4} * width_px * height_px);
   }
   return storages_.emplace_back(std::move(storage));
 }
 
-void SourceTexture::tryImport(const EglContext& context, std::uint32_t width_px,
+void SourceTexture::tryImport(const gl::Context& context, std::uint32_t width_px,
                               std::uint32_t height_px) {
   const auto started = startImport(context, width_px, height_px);
   upload_reason_ = started ? std::string() : started.error();
 }
 
-std::expected<void, std::string> SourceTexture::startImport(const EglContext& context,
+std::expected<void, std::string> SourceTexture::startImport(const gl::Context& context,
                                                             std::uint32_t width_px,
                                                             std::uint32_t height_px) {
   if (site_ == DemosaicSite::kCpu) return std::unexpected("the CPU demosaics");

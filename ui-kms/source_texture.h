@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "hal/display.h"
+#include "hal/gl/context.h"
+#include "hal/gl/objects.h"
 #include "ui-kms/demosaic_pass.h"
 #include "ui-kms/dma_buf_import.h"
-#include "ui-kms/egl_context.h"
-#include "ui-kms/gl_objects.h"
+#include "ui-kms/render_target.h"
 
 namespace ui {
 
@@ -34,7 +35,7 @@ class SourceTexture {
   void prepare(std::uint32_t width_px, std::uint32_t height_px);
 
   /// Reads frames of dma-bufs in place from now on, if a probe frame of that size comes through.
-  void tryImport(const EglContext& context, std::uint32_t width_px, std::uint32_t height_px);
+  void tryImport(const gl::Context& context, std::uint32_t width_px, std::uint32_t height_px);
   /// Why no frame is read in place; empty where those of dma-bufs are.
   [[nodiscard]] const std::string& uploadReason() const { return upload_reason_; }
 
@@ -48,12 +49,12 @@ class SourceTexture {
  private:
   struct Storage {
     RenderTarget colour;          // RGBA, linear light
-    GlTexture mosaic;             // kGpu
+    gl::Texture mosaic;           // kGpu
     std::vector<std::byte> rgba;  // kCpu
   };
   explicit SourceTexture(DemosaicSite site) : site_(site) {}
   Storage& storageFor(std::uint32_t width_px, std::uint32_t height_px);
-  [[nodiscard]] std::expected<void, std::string> startImport(const EglContext& context,
+  [[nodiscard]] std::expected<void, std::string> startImport(const gl::Context& context,
                                                              std::uint32_t width_px,
                                                              std::uint32_t height_px);
   void upload(GLuint texture, GLenum format, const hal::SourceImage& source, const std::byte* data);

@@ -68,7 +68,7 @@ std::expected<StatusLinePass, std::string> StatusLinePass::create(const std::str
                                                                   std::uint32_t height_px) {
   auto atlas = GlyphAtlas::create(font_path, emPx(height_px));
   if (!atlas) return std::unexpected(atlas.error());
-  auto program = makeProgram("status line", kVertex, kFragment);
+  auto program = gl::makeProgram("status line", kVertex, kFragment);
   if (!program) return std::unexpected(program.error());
   StatusLinePass pass(std::move(*atlas), width_px, height_px);
   pass.program_ = std::move(*program);
@@ -77,23 +77,24 @@ std::expected<StatusLinePass, std::string> StatusLinePass::create(const std::str
 }
 
 void StatusLinePass::makeBuffers() {
-  texture_ = makeTexture(GL_R8, atlas_.widthPx(), atlas_.heightPx(), GL_LINEAR, GL_CLAMP_TO_EDGE);
+  texture_ =
+      gl::makeTexture(GL_R8, atlas_.widthPx(), atlas_.heightPx(), GL_LINEAR, GL_CLAMP_TO_EDGE);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(atlas_.widthPx()),
                   static_cast<GLsizei>(atlas_.heightPx()), GL_RED, GL_UNSIGNED_BYTE,
                   atlas_.pixels().data());
-  layout_ = makeVertexArray();
-  buffer_ = makeBuffer();
+  layout_ = gl::makeVertexArray();
+  buffer_ = gl::makeBuffer();
   glBindVertexArray(layout_.get());
   glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners_.capacity() * sizeof(Vertex)),
                nullptr, GL_DYNAMIC_DRAW);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
-  colour_at_ = glGetUniformLocation(program_.get(), "text_colour");
-  plate_at_ = glGetUniformLocation(program_.get(), "plate");
+  colour_at_ = uniform(program_, "text_colour");
+  plate_at_ = uniform(program_, "plate");
   glUseProgram(program_.get());
-  glUniform2f(glGetUniformLocation(program_.get(), "display_px"), width_px_, height_px_);
+  glUniform2f(uniform(program_, "display_px"), width_px_, height_px_);
 }
 
 void StatusLinePass::addQuad(float left, float top, float right, float bottom, float u0, float v0,

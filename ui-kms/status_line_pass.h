@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hal/display.h"
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/objects.h"
 #include "ui-kms/glyph_atlas.h"
 
 namespace ui {
@@ -40,10 +40,10 @@ class StatusLinePass {
   GlyphAtlas atlas_;
   float width_px_;
   float height_px_;
-  GlProgram program_;
-  GlTexture texture_;
-  GlVertexArray layout_;
-  GlBuffer buffer_;
+  gl::Program program_;
+  gl::Texture texture_;
+  gl::VertexArray layout_;
+  gl::Buffer buffer_;
   GLint colour_at_ = -1;
   GLint plate_at_ = -1;  // half size, corner radius, softness; zero for letters
 

@@ -88,21 +88,21 @@ void setGain(GLint at, const hal::WarpPlan& plan) {
 std::expected<WarpPass, std::string> WarpPass::create(std::uint32_t width_px,
                                                       std::uint32_t height_px) {
   WarpPass pass(width_px, height_px);
-  auto inner = makeProgram("warp", kInnerVertex, std::string(kEncode) + kInnerFragment);
+  auto inner = gl::makeProgram("warp", kInnerVertex, std::string(kEncode) + kInnerFragment);
   if (!inner) return std::unexpected(inner.error());
-  auto edge = makeProgram("warp edge", kEdgeVertex, std::string(kEncode) + kEdgeFragment);
+  auto edge = gl::makeProgram("warp edge", kEdgeVertex, std::string(kEncode) + kEdgeFragment);
   if (!edge) return std::unexpected(edge.error());
   pass.inner_ = std::move(*inner);
   pass.edge_ = std::move(*edge);
-  pass.inner_at_.gain_rgb = glGetUniformLocation(pass.inner_.get(), "gain_rgb");
-  const GLuint program = pass.edge_.get();
-  pass.edge_at_ = {.gain_rgb = glGetUniformLocation(program, "gain_rgb"),
-                   .focal_px = glGetUniformLocation(program, "focal_px"),
-                   .centre_px = glGetUniformLocation(program, "centre_px"),
-                   .radial = glGetUniformLocation(program, "radial"),
-                   .tangential = glGetUniformLocation(program, "tangential"),
-                   .max_radius2 = glGetUniformLocation(program, "max_radius2"),
-                   .source_px = glGetUniformLocation(program, "source_px")};
+  pass.inner_at_.gain_rgb = uniform(pass.inner_, "gain_rgb");
+  const gl::Program& program = pass.edge_;
+  pass.edge_at_ = {.gain_rgb = uniform(program, "gain_rgb"),
+                   .focal_px = uniform(program, "focal_px"),
+                   .centre_px = uniform(program, "centre_px"),
+                   .radial = uniform(program, "radial"),
+                   .tangential = uniform(program, "tangential"),
+                   .max_radius2 = uniform(program, "max_radius2"),
+                   .source_px = uniform(program, "source_px")};
   pass.makeBuffers();
   return pass;
 }
@@ -118,10 +118,10 @@ void WarpPass::makeBuffers() {
     }
   }
   const std::size_t cells = std::size_t{mesh_.columns() - 1} * (mesh_.rows() - 1);
-  layout_ = makeVertexArray();
-  positions_ = makeBuffer();
-  vertices_ = makeBuffer();
-  indices_ = makeBuffer();
+  layout_ = gl::makeVertexArray();
+  positions_ = gl::makeBuffer();
+  vertices_ = gl::makeBuffer();
+  indices_ = gl::makeBuffer();
   glBindVertexArray(layout_.get());
   glBindBuffer(GL_ARRAY_BUFFER, positions_.get());
   glBufferData(GL_ARRAY_BUFFER, bytesOf(positions), positions.data(), GL_STATIC_DRAW);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "hal/display.h"
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/objects.h"
 #include "ui-kms/warp_mesh.h"
 
 namespace ui {
@@ -35,14 +35,14 @@ class WarpPass {
   };
 
   WarpMesh mesh_;
-  GlProgram inner_;
-  GlProgram edge_;
+  gl::Program inner_;
+  gl::Program edge_;
   InnerUniforms inner_at_;
   EdgeUniforms edge_at_;
-  GlVertexArray layout_;
-  GlBuffer positions_;
-  GlBuffer vertices_;
-  GlBuffer indices_;
+  gl::VertexArray layout_;
+  gl::Buffer positions_;
+  gl::Buffer vertices_;
+  gl::Buffer indices_;
 };
 
 }  // namespace ui

@@ -37,7 +37,6 @@ class SharedSlots {
       const rt::LockedArena& arena, std::span<const std::size_t> slot_bytes);
 
   [[nodiscard]] const rt::DmaBufPart& part(std::size_t slot) const { return parts_[slot]; }
-  [[nodiscard]] std::size_t dmaBufs() const { return buffers_.size(); }
 
  private:
   std::vector<rt::DmaBuf> buffers_;

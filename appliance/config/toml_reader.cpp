@@ -6,30 +6,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
 #include <toml++/toml.h>
 
+#include "rt/edit_distance.h"
 #include "rt/printable.h"
 
 namespace appliance {
 namespace {
-
-std::size_t editDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j + 1] + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
 
 /// Shortest form that a person writes: 16384, 0.5, 1e+300.
 std::string written(double value) {
@@ -94,7 +80,7 @@ std::optional<std::string_view> closestWord(std::string_view word,
   std::optional<std::string_view> best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string_view candidate : known) {
-    const std::size_t distance = editDistance(word, candidate);
+    const std::size_t distance = rt::editDistance(word, candidate);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

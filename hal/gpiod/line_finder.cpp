@@ -3,32 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <exception>
-#include <numeric>
-#include <string_view>
 #include <system_error>
 
 #include <gpiod.hpp>
 
 #include "hal/gpiod/expander.h"
+#include "rt/edit_distance.h"
 
 namespace hal::gpiod {
 namespace {
 
 constexpr std::size_t kNearestNamed = 3;
-
-/// How many letters must be inserted, removed or replaced to make @p a of @p b.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row[b.size()];
-}
 
 std::string quoted(const std::string& name) {
   return '"' + name + '"';
@@ -45,7 +30,7 @@ std::string nearestNames(const LineList& list, const std::string& name) {
   for (const ListedLine& line : list.lines) names.push_back(line.name);
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
-  std::ranges::stable_sort(names, {}, [&](const auto& one) { return distance(one, name); });
+  std::ranges::stable_sort(names, {}, [&](const auto& one) { return rt::editDistance(one, name); });
   names.resize(std::min(names.size(), kNearestNamed));
   std::ranges::transform(names, names.begin(), quoted);
   return joined(names);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -8,18 +7,13 @@
 #include <thread>
 #include <vector>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/trigger_loop.h"
 #include "hal/backends.h"
 #include "hal/emulated/trigger_line.h"
 #include "tests/bench/reception/round.h"
 #include "tests/bench/support/comparison.h"
+#include "tests/support/fault_port.h"
 
 // What lost packets cost: twenty cameras at 40 Hz, first on a whole network, then on one that loses
 // 1 % of all stream packets, resent ones too. How many frames stay incomplete, and how much later
@@ -33,22 +27,6 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kCameras = 20;
 constexpr double kRate_hz = 40;
 constexpr std::uint16_t kFaultPort = 3991;
-
-/// Says @p command to the emulator and waits for its "ok".
-bool command(const std::string& address, const std::string& command) {
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(kFaultPort);
-  inet_pton(AF_INET, address.c_str(), &to.sin_addr);
-  const auto* native = reinterpret_cast<const sockaddr*>(&to);
-  bool ok = sendto(fd, command.data(), command.size(), 0, native, sizeof to) > 0;
-  pollfd answer{.fd = fd, .events = POLLIN, .revents = 0};
-  std::array<char, 8> text{};
-  ok = ok && poll(&answer, 1, 5000) == 1 && recv(fd, text.data(), 2, 0) == 2;
-  close(fd);
-  return ok && std::string(text.data()) == "ok";
-}
 
 /// Notes of every frame whether it came whole and how long after its trigger.
 class Recorder final : public hal::FrameSink {
@@ -196,7 +174,8 @@ int main(int argc, char** argv) {
   };
   const auto whole = runLossRound(setup, length);
   if (!whole) return fail(whole.error());
-  if (!command(setup.cameras[0].address, "all loss 1")) return fail("no answer to \"all loss 1\"");
+  if (test::sendFault(setup.cameras[0].address, kFaultPort, "all loss 1") != "ok")
+    return fail("no answer to \"all loss 1\"");
   const auto lossy = runLossRound(setup, length);
   if (!lossy) return fail(lossy.error());
 

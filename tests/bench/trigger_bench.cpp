@@ -19,6 +19,7 @@
 #include "tests/bench/support/comparison.h"
 #include "tests/bench/support/cpus.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 // How late the trigger's edge leaves, beside cyclictest at the same interval, priority and CPU, in
 // turns. Both count from the deadline to the instant at which the awake thread looked at the clock;

@@ -21,6 +21,7 @@
 #include "hal/emulated/trigger_line.h"
 #include "tests/support/child_process.h"
 #include "tests/support/fault_port.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 

@@ -2,7 +2,6 @@
 // cameras go on, and everything that comes back is taken back, without anybody's help.
 
 #include <array>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <set>
@@ -17,8 +16,11 @@
 #include <sys/socket.h>
 
 #include "rt/unique_fd.h"
+#include "tests/support/box_commands.h"
 #include "tests/support/child_process.h"
 #include "tests/support/fault_port.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/trace_records.h"
 
 namespace {
 
@@ -28,6 +30,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr int kCameras = 4;
+const test::CameraNetwork kNetwork{
+    .first_address = "127.0.7.1", .cameras = kCameras, .wire_port = 3987};
+constexpr std::uint16_t kFaultPort = 3986;
 constexpr auto kLong = 60s;  // far longer than anything here takes
 
 sockaddr_in addressOf(const std::string& address, std::uint16_t port) {
@@ -42,15 +47,14 @@ sockaddr_in addressOf(const std::string& address, std::uint16_t port) {
 class Rig {
  public:
   explicit Rig(const test::TemporaryFolder& folder)
-      : process_({KAGAMI_EMULATOR, "--cameras", std::to_string(kCameras), "--size", "640x480",
-                  "--first-address", "127.0.7.1", "--wire-port", "3987", "--fault-port", "3986",
-                  "--rig-out", folder / "rig.toml"},
+      : process_(emulatorCommand(kNetwork, "640x480", folder.path(),
+                                 {"--fault-port", std::to_string(kFaultPort)}),
                  folder / "emulator.log") {
     EXPECT_TRUE(process_.waitForOutput("ready", 30s)) << process_.output();
   }
 
   void fault(const std::string& command) const {
-    EXPECT_EQ(test::sendFault("127.0.7.1", 3986, command), "ok") << command;
+    EXPECT_EQ(test::sendFault(kNetwork.first_address, kFaultPort, command), "ok") << command;
   }
 
  private:
@@ -61,27 +65,8 @@ class Daemon {
  public:
   Daemon(const test::TemporaryFolder& folder, const std::string& run)
       : trace_(folder / (run + ".jsonl")),
-        process_({KAGAMID,
-                  "--config",
-                  KAGAMID_CONFIG,  //
-                  "--set",
-                  "rig.file=" + (folder / "rig.toml").string(),
-                  "--set",
-                  R"(cameras.addresses=["127.0.7.1","127.0.7.2","127.0.7.3","127.0.7.4"])",
-                  "--set",
-                  "cameras.packet_size_bytes=1500",  //
-                  "--set",
-                  "trigger.wire_port=3987",  //
-                  "--set",
-                  "trigger.rate_hz=20",  //
-                  "--set",
-                  "history.sets=40",  //
-                  "--set",
-                  "display.refresh_hz=20",  //
-                  "--set",
-                  "control.bus=none",  //
-                  "--set",
-                  "state.trace=" + trace_.string()},
+        process_(kagamidCommand(kNetwork, folder.path(),
+                                {"trigger.rate_hz=20", "state.trace=" + trace_.string()}),
                  folder / (run + ".log")) {
     EXPECT_TRUE(says("running: 4 cameras"));
   }
@@ -105,11 +90,11 @@ class Daemon {
   /// The triggers under which each camera's frames were stored, of the trace so far.
   [[nodiscard]] std::map<int, std::set<std::uint64_t>> stored() const {
     std::map<int, std::set<std::uint64_t>> triggers;
-    std::ifstream trace(trace_);
-    for (std::string line; std::getline(trace, line);) {
-      const json record = json::parse(line, nullptr, false);
-      if (record.is_discarded() || record["record"] != "frame" || record["trigger"] == 0) continue;
-      triggers[record["camera"]].insert(record["trigger"].get<std::uint64_t>());
+    auto records = test::readTrace(trace_);
+    for (const json& frame : records["frame"]) {
+      if (frame["trigger"] != 0) {
+        triggers[frame["camera"]].insert(frame["trigger"].get<std::uint64_t>());
+      }
     }
     return triggers;
   }

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "appliance/control/control_client.h"
-#include "tests/component/private_bus.h"
+#include "tests/support/private_bus.h"
 
 namespace {
 
@@ -107,7 +107,7 @@ class ControlInterface : public testing::Test {
     return std::move(*opened);
   }
 
-  PrivateBus bus_;
+  test::PrivateBus bus_;
   Box box_;
   std::unique_ptr<ControlServer> server_;
   std::string fault_;  // read after the thread is joined
@@ -220,7 +220,7 @@ TEST(ControlBus, AnUnreachableBusIsAnOutcome) {
 }
 
 TEST(ControlBus, AMissingDaemonIsNamedWithTheWayToStartIt) {
-  const PrivateBus bus;
+  const test::PrivateBus bus;
   if (bus.address().empty())
     GTEST_SKIP() << "dbus-daemon cannot be started here (package dbus-daemon)";
   auto kagami = ControlClient::open(bus.address(), kName);

@@ -1,104 +1,48 @@
 // The daemon with a depth sensor: it runs beside cameras and screen, and never in their way.
 
-#include <functional>
 #include <memory>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/component/private_bus.h"
-#include "tests/support/child_process.h"
+#include "tests/support/commanded_box.h"
 #include "tests/support/depth_feed.h"
 
 namespace {
 
-using namespace std::chrono_literals;
 using nlohmann::json;
 
-class DepthDaemon : public testing::Test {
+class DepthDaemon : public test::CommandedBox {
  protected:
-  void SetUp() override {
-    if (bus_.address().empty()) GTEST_SKIP() << "dbus-daemon is not installed";
-    ASSERT_TRUE(emulator_.waitForOutput("ready", 30s)) << emulator_.output();
-  }
-
-  void TearDown() override {
-    if (!daemon_) return;
-    daemon_->terminate();
-    EXPECT_EQ(daemon_->wait(60s), 0) << daemon_->output();
-  }
-
-  void run(std::vector<std::string> settings) {
-    settings.insert(
-        settings.end(),
-        {"rig.file=" + (folder_ / "rig.toml").string(), R"(cameras.addresses=["127.0.9.1"])",
-         "cameras.packet_size_bytes=1500", "trigger.wire_port=3989", "trigger.rate_hz=10",
-         "history.sets=40", "display.refresh_hz=20", "control.bus=" + bus_.address()});
-    std::vector<std::string> command{KAGAMID, "--config", KAGAMID_CONFIG};
-    for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
-    daemon_ = std::make_unique<test::ChildProcess>(command, folder_ / "kagamid.log");
-    ASSERT_TRUE(daemon_->waitForOutput("running:", 60s)) << daemon_->output();
-  }
-
-  std::string kagami(std::vector<std::string> words) {
-    words.insert(words.begin(), {KAGAMI, "--bus", bus_.address()});
-    test::ChildProcess program(words, folder_ / "kagami.log");
-    return program.wait(20s) == 0 ? program.output() : "";
-  }
-
-  /// Whether `kagami status` comes to say @p text, within a generous time.
-  testing::AssertionResult says(const std::string& text) {
-    std::string last;
-    for (int i = 0; i < 100; ++i) {
-      last = kagami({"status"});
-      if (last.find(text) != std::string::npos) return testing::AssertionSuccess();
-      std::this_thread::sleep_for(100ms);
-    }
-    return testing::AssertionFailure() << last;
-  }
-
-  test::TemporaryFolder folder_;
-  PrivateBus bus_;
-  test::ChildProcess emulator_{
-      {KAGAMI_EMULATOR, "--cameras", "1", "--size", "448x320", "--first-address", "127.0.9.1",
-       "--wire-port", "3989", "--rig-out", (folder_ / "rig.toml").string()},
-      folder_ / "emulator.log"};
-  std::unique_ptr<test::ChildProcess> daemon_;
+  DepthDaemon() : CommandedBox({.first_address = "127.0.9.1", .cameras = 1, .wire_port = 3989}) {}
 };
 
 TEST_F(DepthDaemon, TellsHowItsSensorFares) {
   auto feed = std::make_unique<test::DepthFeed>();
-  run({"depth_sensor.backend=openni", std::string("depth_sensor.drivers=") + KAGAMI_DEPTH_DRIVERS,
-       "depth_sensor.width_px=320", "depth_sensor.height_px=240"});
+  startDaemon({"depth_sensor.backend=openni",
+               std::string("depth_sensor.drivers=") + KAGAMI_DEPTH_DRIVERS,
+               "depth_sensor.width_px=320", "depth_sensor.height_px=240"});
   EXPECT_TRUE(says("depth    streaming: Kagami Emulated RGB-D, 320x240 with colour, "));
   feed.reset();
   EXPECT_TRUE(says("depth    lost: Kagami Emulated RGB-D"));
   EXPECT_TRUE(says("degraded: no depth sensor found: plug it in"));
   feed = std::make_unique<test::DepthFeed>();
   EXPECT_TRUE(says("came back 1 times"));
-  const auto look = [this] { return json::parse(kagami({"status", "--json"})); };
-  json status = look();
   // Pictures a second are told after the first second of pictures.
-  for (int i = 0; i < 100 && status.at("shown_hz") == 0; ++i) {
-    std::this_thread::sleep_for(100ms);
-    status = look();
-  }
-  EXPECT_EQ(status.at("frames_lost"), 0) << "the cameras never noticed";
-  EXPECT_GT(status.at("shown_hz"), 0);
+  EXPECT_TRUE(becomes([](const json& status) { return status.at("shown_hz") > 0; }));
+  EXPECT_EQ(status().at("frames_lost"), 0) << "the cameras never noticed";
 }
 
 TEST_F(DepthDaemon, RunsWithoutASensorThatCannotBeOpened) {
-  run({"depth_sensor.backend=folder", "depth_sensor.source=/nowhere"});
+  startDaemon({"depth_sensor.backend=folder", "depth_sensor.source=/nowhere"});
   EXPECT_TRUE(
       says("degraded: /nowhere: there is no such folder: correct depth_sensor.source; the "
            "box runs without its depth sensor"));
 }
 
 TEST_F(DepthDaemon, NamesTheBackendsThereAre) {
-  run({"depth_sensor.backend=lidar"});
+  startDaemon({"depth_sensor.backend=lidar"});
   EXPECT_TRUE(says(R"(is not one of "none", "openni", "folder")"));
 }
 

@@ -18,6 +18,7 @@
 #include "hal/openni/openni_sensor.h"
 #include "tests/support/depth_feed.h"
 #include "tests/support/depth_recordings.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -27,7 +28,7 @@ using hal::openni::OpenniSensor;
 using hal::openni::Play;
 using hal::openni::SensorSettings;
 using test::DepthFeed;
-using test::ScratchFolder;
+using test::TemporaryFolder;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
@@ -203,7 +204,7 @@ TEST(OpenniSensor, SaysWhatIsWrongWithTheDriverFolder) {
   auto sensor = opened(settings);
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "there is no such folder"), HasSubstr("/nowhere/Drivers"));
-  const ScratchFolder empty;
+  const TemporaryFolder empty;
   settings.drivers = empty.file("");
   sensor = opened(settings);
   ASSERT_TRUE(sensor);
@@ -212,7 +213,7 @@ TEST(OpenniSensor, SaysWhatIsWrongWithTheDriverFolder) {
 }
 
 TEST(OpenniSensor, LooksOnWhereADriverIsNone) {
-  const ScratchFolder drivers;
+  const TemporaryFolder drivers;
   std::ofstream(drivers.file("libbroken.so")) << "not a library";
   SensorSettings settings = live();
   settings.drivers = drivers.file("");
@@ -222,12 +223,12 @@ TEST(OpenniSensor, LooksOnWhereADriverIsNone) {
 }
 
 TEST(Recordings, ThatAreMissingOrNoneSaySo) {
-  const ScratchFolder scratch;
-  auto sensor = opened({.source = scratch.file("nowhere.oni")});
+  const TemporaryFolder scratch;
+  auto sensor = opened({.source = scratch / "nowhere.oni"});
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "cannot be played"), HasSubstr("nowhere.oni"));
-  std::ofstream(scratch.file("text.oni")) << "not a recording";
-  sensor = opened({.source = scratch.file("text.oni")});
+  std::ofstream(scratch / "text.oni") << "not a recording";
+  sensor = opened({.source = scratch / "text.oni"});
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "cannot be played"), HasSubstr("copied whole"));
 }
@@ -255,15 +256,14 @@ Played playAll(hal::DepthSensor& sensor) {
 }
 
 TEST(Recordings, OfAFolderAndOfAnOniFileAreEqualPictureByPicture) {
-  const ScratchFolder scratch;
-  ASSERT_TRUE(test::recordOni(scratch, scratch.file("a.oni")));
-  ASSERT_TRUE(
-      test::runDepth(scratch, {"export", "--source", scratch.file("a.oni"), scratch.file("f")}));
+  const TemporaryFolder scratch;
+  ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni"));
+  ASSERT_TRUE(test::runDepth(scratch, {"export", "--source", scratch / "a.oni", scratch / "f"}));
   const auto oni =
-      opened({.source = scratch.file("a.oni"), .play = Play::kEveryFrame, .repeat = false});
+      opened({.source = scratch / "a.oni", .play = Play::kEveryFrame, .repeat = false});
   ASSERT_TRUE(oni);
   auto folder =
-      FolderSensor::open({.folder = scratch.file("f"), .play = Play::kEveryFrame, .repeat = false});
+      FolderSensor::open({.folder = scratch / "f", .play = Play::kEveryFrame, .repeat = false});
   ASSERT_TRUE(folder) << folder.error();
   const Played a = playAll(*oni);
   const Played b = playAll(**folder);
@@ -276,30 +276,29 @@ TEST(Recordings, OfAFolderAndOfAnOniFileAreEqualPictureByPicture) {
 }
 
 TEST(Recordings, ArePlayedToTheirLastWholePictureWhereTheirEndIsMissing) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   {
     const DepthFeed feed;
     test::ChildProcess recorder({KAGAMI_DEPTH, "record", "--drivers", KAGAMI_DEPTH_DRIVERS,
-                                 "--seconds", "60", scratch.file("cut.oni")},
-                                scratch.file("log"));
+                                 "--seconds", "60", scratch / "cut.oni"},
+                                scratch / "log");
     const rt::Timestamp end = rt::now() + 30s;
     std::error_code none;
-    while (rt::now() < end &&
-           (!std::filesystem::exists(scratch.file("cut.oni"), none) ||
-            std::filesystem::file_size(scratch.file("cut.oni"), none) < 8'000'000))
+    while (rt::now() < end && (!std::filesystem::exists(scratch / "cut.oni", none) ||
+                               std::filesystem::file_size(scratch / "cut.oni", none) < 8'000'000))
       std::this_thread::sleep_for(20ms);
   }  // killed in the middle of a picture
   const auto sensor =
-      opened({.source = scratch.file("cut.oni"), .play = Play::kEveryFrame, .repeat = false});
+      opened({.source = scratch / "cut.oni", .play = Play::kEveryFrame, .repeat = false});
   ASSERT_TRUE(sensor);
   const Played played = playAll(*sensor);
   EXPECT_GE(played.numbers.size(), 5u) << sensor->status().message;
 }
 
 TEST(Recordings, RepeatWhereAsked) {
-  const ScratchFolder scratch;
-  ASSERT_TRUE(test::recordOni(scratch, scratch.file("a.oni")));
-  const auto sensor = opened({.source = scratch.file("a.oni"), .play = Play::kEveryFrame});
+  const TemporaryFolder scratch;
+  ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni"));
+  const auto sensor = opened({.source = scratch / "a.oni", .play = Play::kEveryFrame});
   ASSERT_TRUE(sensor);
   std::uint64_t last = 0;
   int restarts = 0;

@@ -11,7 +11,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "tests/support/box_commands.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/trace_records.h"
 
 namespace {
 
@@ -36,7 +39,7 @@ class SilentWire {
   SilentWire& operator=(const SilentWire&) = delete;
 
   [[nodiscard]] bool bound() const { return bound_; }
-  [[nodiscard]] std::string port() const { return std::to_string(port_); }
+  [[nodiscard]] int port() const { return port_; }
 
  private:
   int fd_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -68,18 +71,12 @@ TEST(FakeCameraOfAravis, IsConfiguredReceivedAndShownByTheDaemon) {
   test::ChildProcess camera({fake, "-i", "127.0.0.1", "-s", "kagami"}, folder / "camera.log");
   std::this_thread::sleep_for(1s);  // it says nothing when it is ready
   ASSERT_FALSE(camera.wait(0s)) << camera.output();
-  test::ChildProcess daemon({KAGAMID,        "--config",
-                             KAGAMID_CONFIG,                                                //
-                             "--set",        "rig.file=" + (folder / "rig.toml").string(),  //
-                             "--set",        R"(cameras.addresses=["127.0.0.1"])",          //
-                             "--set",        "cameras.trigger_source=free-running",         //
-                             "--set",        "cameras.packet_size_bytes=1500",              //
-                             "--set",        "trigger.wire_port=" + wire.port(),            //
-                             "--set",        "trigger.rate_hz=20",                          //
-                             "--set",        "history.sets=40",                             //
-                             "--set",        "control.bus=none",                            //
-                             "--set",        "state.trace=" + (folder / "trace.jsonl").string()},
-                            folder / "kagamid.log");
+  test::ChildProcess daemon(
+      test::kagamidCommand({.first_address = "127.0.0.1", .cameras = 1, .wire_port = wire.port()},
+                           folder.path(),
+                           {"cameras.trigger_source=free-running", "trigger.rate_hz=20",
+                            "state.trace=" + (folder / "trace.jsonl").string()}),
+      folder / "kagamid.log");
   ASSERT_TRUE(daemon.waitForOutput("running: 1 cameras", 60s)) << daemon.output();
   std::this_thread::sleep_for(3s);
   daemon.terminate();
@@ -87,12 +84,9 @@ TEST(FakeCameraOfAravis, IsConfiguredReceivedAndShownByTheDaemon) {
 
   std::size_t stored = 0;
   std::size_t shown = 0;
-  std::ifstream trace(folder / "trace.jsonl");
-  for (std::string line; std::getline(trace, line);) {
-    const auto record = nlohmann::json::parse(line);
-    if (record["record"] == "frame" && record["trigger"] != 0) ++stored;
-    if (record["record"] == "picture" && record["trigger"] != 0) ++shown;
-  }
+  auto records = test::readTrace(folder / "trace.jsonl");
+  for (const nlohmann::json& frame : records["frame"]) stored += frame["trigger"] != 0 ? 1 : 0;
+  for (const nlohmann::json& picture : records["picture"]) shown += picture["trigger"] != 0 ? 1 : 0;
   EXPECT_GT(stored, 10U) << daemon.output();
   EXPECT_GT(shown, 10U) << daemon.output();
 }

@@ -11,7 +11,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "appliance/tools/emulator_files.h"
+#include "tests/support/box_commands.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/trace_records.h"
 
 namespace {
 
@@ -21,43 +25,24 @@ using testing::Each;
 using testing::ElementsAre;
 
 constexpr std::int64_t kExposure_ns = 1'000'000;
+const test::CameraNetwork kNetwork{.first_address = "127.0.6.1", .cameras = 3, .wire_port = 3986};
 
 /// A short run of three cameras whose inputs take 5, 62.5 and 80 us.
 class OptoRun {
  public:
   explicit OptoRun(const std::string& configured_us) {
     test::ChildProcess emulator(
-        {KAGAMI_EMULATOR, "--cameras", "3", "--size", "320x256", "--first-address", "127.0.6.1",
-         "--wire-port", "3986", "--rig-out", folder_ / "rig.toml", "--wire-log",
-         folder_ / "wire.csv", "--opto-delays-us", "5,62.5,80"},
+        emulatorCommand(kNetwork, "320x256", folder_.path(),
+                        {"--wire-log", folder_ / "wire.csv", "--opto-delays-us", "5,62.5,80"}),
         folder_ / "emulator.log");
     if (!emulator.waitForOutput("ready", 30s)) {
       ADD_FAILURE() << emulator.output();
       return;
     }
-    test::ChildProcess daemon({KAGAMID,
-                               "--config",
-                               KAGAMID_CONFIG,
-                               "--set",
-                               "rig.file=" + path("rig.toml"),
-                               "--set",
-                               R"(cameras.addresses=["127.0.6.1","127.0.6.2","127.0.6.3"])",
-                               "--set",
-                               "cameras.opto_delay_us=" + configured_us,
-                               "--set",
-                               "trigger.wire_port=3986",
-                               "--set",
-                               "trigger.rate_hz=10",
-                               "--set",
-                               "history.sets=20",
-                               "--set",
-                               "display.width_px=320",
-                               "--set",
-                               "display.height_px=180",
-                               "--set",
-                               "state.trace=" + path("trace.jsonl"),
-                               "--set",
-                               "control.bus=none"},
+    test::ChildProcess daemon(kagamidCommand(kNetwork, folder_.path(),
+                                             {"cameras.opto_delay_us=" + configured_us,
+                                              "display.width_px=320", "display.height_px=180",
+                                              "state.trace=" + (folder_ / "trace.jsonl").string()}),
                               folder_ / "kagamid.log");
     if (!daemon.waitForOutput("running:", 60s)) {
       ADD_FAILURE() << daemon.output();
@@ -73,38 +58,26 @@ class OptoRun {
   }
 
   /// Per trigger: when each camera's exposure ended, after the edge and its exposure time.
-  std::map<long, std::vector<std::int64_t>> delays_ns;
+  std::map<std::uint64_t, std::vector<std::int64_t>> delays_ns;
   std::size_t frames = 0;
   std::size_t unattributed = 0;
 
  private:
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
   void readWireLog() {
     std::ifstream log(folder_ / "wire.csv");
-    std::string line;
-    std::getline(log, line);
-    while (std::getline(log, line)) {
-      int camera = 0;
-      long frame_id = 0;
-      long trigger = 0;
-      long edge_ns = 0;
-      long exposure_end_ns = 0;
-      ASSERT_EQ(std::sscanf(line.c_str(), "%d,%ld,%ld,%ld,%ld", &camera, &frame_id, &trigger,
-                            &edge_ns, &exposure_end_ns),
-                5)
-          << line;
-      auto& delays = delays_ns[trigger];
+    const auto frames_sent = appliance::readWireLog(log, "wire.csv");
+    ASSERT_TRUE(frames_sent) << frames_sent.error();
+    for (const appliance::SentFrame& frame : *frames_sent) {
+      auto& delays = delays_ns[frame.trigger];
       delays.resize(3);
-      delays.at(static_cast<std::size_t>(camera)) = exposure_end_ns - edge_ns - kExposure_ns;
+      delays.at(frame.camera) = (frame.exposure_end - frame.trigger_edge).count() - kExposure_ns;
     }
   }
   void readTrace() {
-    std::ifstream trace(folder_ / "trace.jsonl");
-    for (std::string line; std::getline(trace, line);) {
-      const json record = json::parse(line);
-      if (record["record"] != "frame") continue;
+    auto records = test::readTrace(folder_ / "trace.jsonl");
+    for (const json& frame : records["frame"]) {
       ++frames;
-      unattributed += record["trigger"] == 0 ? 1 : 0;
+      unattributed += frame["trigger"] == 0 ? 1 : 0;
     }
   }
 

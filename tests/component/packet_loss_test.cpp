@@ -10,7 +10,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/box_commands.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/trace_records.h"
 
 namespace {
 
@@ -23,13 +26,14 @@ constexpr const char* kFaultPort = "4013";
 
 /// kagamid on @p cameras small cameras; everything that both programs wrote.
 struct BoxRun {
-  BoxRun(std::uint32_t cameras, const std::string& fault, const std::vector<std::string>& settings,
+  BoxRun(int cameras, const std::string& fault, std::vector<std::string> settings,
          std::chrono::seconds length) {
-    const std::vector<std::string> far{
-        KAGAMI_EMULATOR,   "--cameras", std::to_string(cameras), "--size",  "320x240",
-        "--first-address", kAddress,    "--wire-port",           "4012",    "--fault-port",
-        kFaultPort,        "--rig-out", folder / "rig.toml",     "--stats", folder / "stats.json"};
-    test::ChildProcess emulator(far, folder / "emulator.log");
+    const test::CameraNetwork network{
+        .first_address = kAddress, .cameras = cameras, .wire_port = 4012};
+    test::ChildProcess emulator(
+        emulatorCommand(network, "320x240", folder.path(),
+                        {"--fault-port", kFaultPort, "--stats", folder / "stats.json"}),
+        folder / "emulator.log");
     if (!emulator.waitForOutput("ready", 60s)) {
       ADD_FAILURE() << emulator.output();
       return;
@@ -38,28 +42,13 @@ struct BoxRun {
         {KAGAMI_EMULATOR, "--first-address", kAddress, "--fault-port", kFaultPort, "fault", fault},
         folder / "fault.log");
     EXPECT_EQ(command.wait(20s), 0) << command.output();
-    std::string addresses;
-    for (std::uint32_t i = 1; i <= cameras; ++i) {
-      addresses += (i > 1 ? ",\"127.0.12." : "\"127.0.12.") + std::to_string(i) + "\"";
-    }
-    std::vector<std::string> near{KAGAMID, "--config", KAGAMID_CONFIG};
-    const auto set = [&](const std::string& setting) {
-      near.emplace_back("--set");
-      near.push_back(setting);
-    };
-    set("rig.file=" + (folder / "rig.toml").string());
-    set("cameras.addresses=[" + addresses + "]");
-    set("cameras.packet_size_bytes=1500");
-    set("trigger.wire_port=4012");
-    set("trigger.rate_hz=4");
-    // A busy machine answers late, and no frame may be given up for that.
-    set("resend.frame_retention_us=1000000");
-    set("history.sets=40");
-    set("display.refresh_hz=8");
-    set("state.trace=" + (folder / "trace.jsonl").string());
-    set("control.bus=none");
-    for (const std::string& setting : settings) set(setting);
-    test::ChildProcess daemon(near, folder / "kagamid.log");
+    settings.insert(settings.begin(),
+                    {"trigger.rate_hz=4",
+                     // A busy machine answers late, and no frame may be given up for that.
+                     "resend.frame_retention_us=1000000", "display.refresh_hz=8",
+                     "state.trace=" + (folder / "trace.jsonl").string()});
+    test::ChildProcess daemon(kagamidCommand(network, folder.path(), settings),
+                              folder / "kagamid.log");
     if (!daemon.waitForOutput("running:", 120s)) {
       ADD_FAILURE() << daemon.output();
       return;
@@ -70,11 +59,7 @@ struct BoxRun {
     said = daemon.output();
     emulator.terminate();
     EXPECT_EQ(emulator.wait(20s), 0) << emulator.output();
-    std::ifstream trace(folder / "trace.jsonl");
-    for (std::string line; std::getline(trace, line);) {
-      json record = json::parse(line);
-      records[record["record"]].push_back(std::move(record));
-    }
+    records = test::readTrace(folder / "trace.jsonl");
     std::ifstream(folder / "stats.json") >> stats;
   }
 

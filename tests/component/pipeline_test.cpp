@@ -11,9 +11,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "appliance/tools/emulator_files.h"
+#include "tests/support/box_commands.h"
 #include "tests/support/child_process.h"
 #include "tests/support/shown_picture.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/thread_table.h"
+#include "tests/support/trace_records.h"
 
 namespace {
 
@@ -21,52 +25,28 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 constexpr int kCameras = 4;
+const test::CameraNetwork kNetwork{
+    .first_address = "127.0.4.1", .cameras = kCameras, .wire_port = 3994};
 
 /// One run of both programs with a scripted panel; everything they wrote is read back.
 class PipelineRun {
  public:
-  explicit PipelineRun(const std::string& script, std::chrono::seconds length,
-                       std::vector<std::string> more = {}) {
+  explicit PipelineRun(const std::string& script, std::chrono::seconds length) {
     std::ofstream(folder_ / "panel.txt") << script;
     test::ChildProcess emulator(
-        {KAGAMI_EMULATOR, "--cameras", std::to_string(kCameras), "--size", "640x480",
-         "--first-address", "127.0.4.1", "--wire-port", "3994", "--rig-out", path("rig.toml"),
-         "--wire-log", path("wire.csv"), "--stats", path("stats.json")},
+        emulatorCommand(kNetwork, "640x480", folder_.path(),
+                        {"--wire-log", path("wire.csv"), "--stats", path("stats.json")}),
         folder_ / "emulator.log");
     if (!emulator.waitForOutput("ready", 30s)) {
       ADD_FAILURE() << emulator.output();
       return;
     }
-    std::vector<std::string> command{
-        KAGAMID,
-        "--config",
-        KAGAMID_CONFIG,
-        "--set",
-        "rig.file=" + path("rig.toml"),
-        "--set",
-        R"(cameras.addresses=["127.0.4.1","127.0.4.2","127.0.4.3","127.0.4.4"])",
-        "--set",
-        "cameras.packet_size_bytes=1500",
-        "--set",
-        "trigger.wire_port=3994",
-        "--set",
-        "trigger.rate_hz=10",
-        "--set",
-        "history.sets=40",
-        "--set",
-        "display.refresh_hz=20",
-        "--set",
-        "panel.backend=scripted",
-        "--set",
-        "panel.script=" + path("panel.txt"),
-        "--set",
-        "record.directory=" + path("record"),
-        "--set",
-        "state.trace=" + path("trace.jsonl"),
-        "--set",
-        "control.bus=none"};
-    command.insert(command.end(), more.begin(), more.end());
-    test::ChildProcess daemon(command, folder_ / "kagamid.log");
+    test::ChildProcess daemon(
+        kagamidCommand(
+            kNetwork, folder_.path(),
+            {"panel.backend=scripted", "panel.script=" + path("panel.txt"),
+             "record.directory=" + path("record"), "state.trace=" + path("trace.jsonl")}),
+        folder_ / "kagamid.log");
     if (!daemon.waitForOutput("running:", 60s)) {
       ADD_FAILURE() << daemon.output();
       return;
@@ -78,12 +58,7 @@ class PipelineRun {
     emulator.terminate();
     emulator_exit = emulator.wait(20s).value_or(-1);
     if (daemon_exit != 0) return;  // its trace may end anywhere
-
-    std::ifstream trace(folder_ / "trace.jsonl");
-    for (std::string line; std::getline(trace, line);) {
-      json record = json::parse(line);
-      records[record["record"]].push_back(std::move(record));
-    }
+    records = test::readTrace(folder_ / "trace.jsonl");
     pictures = test::readStills(folder_ / "record");
   }
 
@@ -127,15 +102,11 @@ TEST(Pipeline, ShowsTheCameraAndTheTriggerThatItSaysItShows) {
 TEST(Pipeline, StoresEveryFrameOfEveryTriggerUnderItsOwnTrigger) {
   const PipelineRun& run = throughAllModes();
   std::ifstream log(run.path("wire.csv"));
-  std::map<std::pair<int, std::uint64_t>, std::uint64_t> sent;  // camera, frame id -> trigger
-  std::string line;
-  std::getline(log, line);
-  while (std::getline(log, line)) {
-    int camera = 0;
-    unsigned long frame_id = 0;
-    unsigned long trigger = 0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%lu,%lu", &camera, &frame_id, &trigger), 3) << line;
-    sent[{camera, frame_id}] = trigger;
+  const auto frames_sent = appliance::readWireLog(log, "wire.csv");
+  ASSERT_TRUE(frames_sent) << frames_sent.error();
+  std::map<std::pair<std::uint32_t, std::uint64_t>, std::uint64_t> sent;  // camera, frame id
+  for (const appliance::SentFrame& frame : *frames_sent) {
+    sent[{frame.camera, frame.frame_id}] = frame.trigger;
   }
   std::size_t stored = 0;
   for (const json& frame : run.records.at("frame")) {

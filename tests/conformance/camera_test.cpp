@@ -18,6 +18,7 @@
 #include "hal/aravis/camera_probe.h"
 #include "hal/emulated/trigger_line.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include "tests/conformance/depth_sensor_suite.h"
 #include "tests/support/depth_feed.h"
 #include "tests/support/depth_recordings.h"
+#include "tests/support/temporary_folder.h"
 
 namespace test {
 namespace {
@@ -26,9 +27,9 @@ OpenDepthSensor live() {
 }
 
 OpenDepthSensor oniFile() {
-  auto scratch = std::make_shared<ScratchFolder>();
-  EXPECT_TRUE(recordOni(*scratch, scratch->file("a.oni")));
-  auto sensor = OpenniSensor::open({.source = scratch->file("a.oni")});
+  auto scratch = std::make_shared<TemporaryFolder>();
+  EXPECT_TRUE(recordOni(*scratch, *scratch / "a.oni"));
+  auto sensor = OpenniSensor::open({.source = *scratch / "a.oni"});
   if (!sensor) {
     ADD_FAILURE() << sensor.error();
     return {};
@@ -37,11 +38,11 @@ OpenDepthSensor oniFile() {
 }
 
 OpenDepthSensor folder() {
-  auto scratch = std::make_shared<ScratchFolder>();
-  EXPECT_TRUE(recordOni(*scratch, scratch->file("a.oni")));
-  EXPECT_TRUE(runDepth(
-      *scratch, {"export", "--source", scratch->file("a.oni"), "--jpeg", scratch->file("folder")}));
-  auto sensor = FolderSensor::open({.folder = scratch->file("folder")});
+  auto scratch = std::make_shared<TemporaryFolder>();
+  EXPECT_TRUE(recordOni(*scratch, *scratch / "a.oni"));
+  EXPECT_TRUE(runDepth(*scratch,
+                       {"export", "--source", *scratch / "a.oni", "--jpeg", *scratch / "folder"}));
+  auto sensor = FolderSensor::open({.folder = *scratch / "folder"});
   if (!sensor) {
     ADD_FAILURE() << sensor.error();
     return {};

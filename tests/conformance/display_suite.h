@@ -1,67 +1,17 @@
 #pragma once
 
-#include <cstring>
-#include <functional>
+#include <cstdint>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "hal/display.h"
+#include "tests/conformance/display_fixture.h"
 
+// What every backend of hal::Display must do, whatever its screen. One file of a program includes
+// this and says for which backends.
 namespace test {
-
-struct DisplayBackend {
-  std::string name;
-  std::function<std::unique_ptr<hal::Display>()> make;
-};
-
-/// What every backend of hal::Display must do, whatever its screen. One file of a program
-/// includes this and says for which backends.
-class DisplayConformance : public testing::TestWithParam<DisplayBackend> {
- protected:
-  void SetUp() override {
-    display_ = GetParam().make();
-    ASSERT_NE(display_, nullptr);
-    std::strncpy(status_.text.data(), "live", status_.text.size() - 1);
-    pixels_.assign(std::size_t{64} * 48, std::byte{128});
-    plan_.source = {pixels_.data(), 64, 48, hal::PixelFormat::kBayerRG8};
-    plan_.H_camera_display = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    plan_.lens = {.fx_px = 50, .fy_px = 50, .cx_px = 31.5, .cy_px = 23.5, .max_radius = 10};
-  }
-
-  void renderOrFail() { ASSERT_TRUE(display_->render(&plan_, status_)); }
-
-  /// Commits as soon as the display is ready for it.
-  rt::Timestamp commitWhenReady(std::uint64_t picture_id) {
-    const rt::Timestamp patience = rt::now() + kPatience;
-    while (rt::now() < patience) {
-      if (const auto committed = display_->commit(picture_id)) return *committed;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    ADD_FAILURE() << "picture " << picture_id << " could not be committed";
-    return {};
-  }
-
-  std::optional<hal::PageFlip> waitFlip() {
-    const rt::Timestamp patience = rt::now() + kPatience;
-    while (rt::now() < patience) {
-      if (const auto flip = display_->tryPopFlip()) return flip;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return std::nullopt;
-  }
-
-  static constexpr std::chrono::seconds kPatience{20};
-  std::unique_ptr<hal::Display> display_;
-  std::vector<std::byte> pixels_;
-  hal::WarpPlan plan_;
-  hal::StatusLine status_;
-};
 
 TEST_P(DisplayConformance, HasAModeAndNamesWhatDraws) {
   const hal::DisplayMode mode = display_->mode();

@@ -24,6 +24,7 @@
 #include "tests/kernel/support/whole_box.h"
 #include "tests/support/child_process.h"
 #include "tests/support/shown_picture.h"
+#include "tests/support/trace_records.h"
 
 namespace {
 
@@ -87,11 +88,7 @@ class DaemonRun {
     trigger_level_after = box.triggerLevel();
     if (daemon_exit != 0) return;
 
-    std::ifstream trace(box.path("trace.jsonl"));
-    for (std::string line; std::getline(trace, line);) {
-      json record = json::parse(line);
-      records[record["record"]].push_back(std::move(record));
-    }
+    records = test::readTrace(box.path("trace.jsonl"));
     if (auto loaded = appliance::loadRig(box.path("rig.toml"))) rig = *loaded;
     test::ChildProcess report(
         {KAGAMI, "report", "--trace", box.path("trace.jsonl"), "--wire-log", box.path("wire.csv"),

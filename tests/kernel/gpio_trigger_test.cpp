@@ -21,6 +21,7 @@
 #include "tests/kernel/support/gpio_trace.h"
 #include "tests/support/child_process.h"
 #include "tests/support/device_tree.h"
+#include "tests/support/temporary_folder.h"
 
 // Counts what the C++ library and libgpiod allocate: the trigger loop must never do so.
 namespace {

@@ -20,8 +20,8 @@
 
 #include "appliance/control/control_client.h"
 #include "rt/unique_fd.h"
-#include "tests/component/private_bus.h"
 #include "tests/support/child_process.h"
+#include "tests/support/private_bus.h"
 
 namespace test {
 namespace {
@@ -85,7 +85,7 @@ class ScreenAndCapture : public testing::Test {
     EXPECT_EQ(daemon_->wait(60s), 0) << daemon_->output();
   }
 
-  PrivateBus bus_;
+  test::PrivateBus bus_;
   std::unique_ptr<ChildProcess> emulator_;
   std::unique_ptr<ChildProcess> daemon_;
   std::optional<appliance::ControlClient> kagami_;

@@ -1,7 +1,6 @@
 // kagamid on its wires: trigger, loop-back and panel are lines of real GPIO chips, the cameras
 // emulated ones behind the bridge.
 
-#include <fstream>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,6 +13,8 @@
 
 #include "tests/kernel/support/gpio_sim.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/trace_records.h"
 
 namespace test {
 namespace {
@@ -70,13 +71,7 @@ class WiredDaemon : public testing::Test {
   std::map<std::string, std::vector<json>> stop() {
     daemon_->terminate();
     EXPECT_EQ(daemon_->wait(60s), 0) << daemon_->output();
-    std::map<std::string, std::vector<json>> records;
-    std::ifstream trace(folder_ / "trace.jsonl");
-    for (std::string line; std::getline(trace, line);) {
-      json record = json::parse(line);
-      records[record["record"]].push_back(std::move(record));
-    }
-    return records;
+    return test::readTrace(folder_ / "trace.jsonl");
   }
 
   /// Whether a lamp is lit within a generous time.

@@ -21,6 +21,7 @@
 #include "tests/kernel/support/gpio_trace.h"
 #include "tests/kernel/support/gpio_wire.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 

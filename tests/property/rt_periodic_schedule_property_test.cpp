@@ -46,16 +46,4 @@ RC_GTEST_PROP(PeriodicScheduleProperty, ServesOrCountsEveryDeadlineAndNeverBurst
   RC_ASSERT(served + schedule.missed() == static_cast<std::uint64_t>(deadlines_passed));
 }
 
-RC_GTEST_PROP(PeriodicScheduleProperty, PhaseChangesMoveTheGridByLessThanAPeriod, ()) {
-  const auto period = Nanoseconds(*rc::gen::inRange(3, 100'000));
-  const auto first = rt::fromNs(1'000'000'000);
-  const auto target =
-      first + Nanoseconds(*rc::gen::inRange<std::int64_t>(-900'000'000, 900'000'000));
-  rt::PeriodicSchedule schedule(first, period);
-  schedule.setPhase(target);
-  RC_ASSERT((schedule.deadline() - target) % period == Nanoseconds{0});
-  const auto moved = schedule.deadline() - first;
-  RC_ASSERT(moved <= period / 2 + Nanoseconds{1} && moved >= -period / 2 - Nanoseconds{1});
-}
-
 }  // namespace

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <thread>
 
+#include "tests/support/fault_port.h"
+
 namespace soak {
 namespace {
 
@@ -61,9 +63,6 @@ std::expected<void, std::string> Box::startEmulator() {
       log, test::ProcessGroup::kOwn);
   if (!emulator_->waitForOutput("ready", 60s))
     return std::unexpected(failed("kagami-emulator", log));
-  auto port = FaultPort::open(kFaultPort);
-  if (!port) return std::unexpected(port.error());
-  faults_ = std::make_unique<FaultPort>(std::move(*port));
   return {};
 }
 
@@ -107,6 +106,13 @@ std::expected<void, std::string> Box::startDaemon() {
     std::this_thread::sleep_for(100ms);
   }
   return std::unexpected("kagamid does not answer on its bus: " + client_->status().error());
+}
+
+std::expected<void, std::string> Box::fault(std::uint32_t camera, std::string_view command) const {
+  const std::string text = std::to_string(camera + 1) + " " + std::string(command);
+  const std::string answer = test::sendFault("127.0.0.1", kFaultPort, text);
+  if (answer != "ok") return std::unexpected("fault \"" + text + "\": " + answer);
+  return {};
 }
 
 std::string Box::ended() {

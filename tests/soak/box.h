@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "appliance/control/control_client.h"
 #include "rt/clock.h"
-#include "tests/soak/fault_port.h"
 #include "tests/support/child_process.h"
 
 namespace soak {
@@ -42,7 +42,9 @@ class Box {
     return folder / "wire.pipe";
   }
 
-  [[nodiscard]] const FaultPort& faults() const { return *faults_; }
+  /// @p camera from 0. Errors: what the emulator answered, or that it did not.
+  [[nodiscard]] std::expected<void, std::string> fault(std::uint32_t camera,
+                                                       std::string_view command) const;
   [[nodiscard]] int daemonPid() const { return daemon_->pid(); }
   /// The daemon's status as JSON.
   [[nodiscard]] std::expected<std::string, std::string> status() { return client_->status(); }
@@ -64,7 +66,6 @@ class Box {
   std::unique_ptr<test::ChildProcess> emulator_;
   std::unique_ptr<test::ChildProcess> bus_;
   std::unique_ptr<test::ChildProcess> daemon_;
-  std::unique_ptr<FaultPort> faults_;
   std::unique_ptr<appliance::ControlClient> client_;
 };
 

@@ -177,16 +177,14 @@ void Run::beginFault(rt::Timestamp now) {
        .until = planned.kind->end.empty() ? now + planned.lasts : rt::Timestamp::max()});
   undone_ = planned.kind->end.empty();
   lasts_ = planned.lasts;
-  if (const auto done = box_.faults().command(planned.camera, planned.kind->begin); !done)
-    note(done.error());
+  if (const auto done = box_.fault(planned.camera, planned.kind->begin); !done) note(done.error());
   // Every kind has been there once: what recovery needs, once, is allocated.
   if (faults_.size() == options_.faults.size() + 1) warm_up_end_ = now;
 }
 
 void Run::endFault(rt::Timestamp now) {
   Fault& fault = faults_.back();
-  if (const auto done = box_.faults().command(fault.camera, fault.kind->end); !done)
-    note(done.error());
+  if (const auto done = box_.fault(fault.camera, fault.kind->end); !done) note(done.error());
   fault.until = now;
   undone_ = true;
 }

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include <EGL/egl.h>
 #include <Eigen/Geometry>
 #include <GLES3/gl3.h>
 #include <opencv2/imgcodecs.hpp>
@@ -23,7 +22,8 @@
 #include "hal/emulated/studio/athlete/albedo.h"
 #include "hal/emulated/studio/athlete/body.h"
 #include "hal/emulated/studio/athlete/performance.h"
-#include "ui-kms/egl_context.h"
+#include "hal/gl/context.h"
+#include "hal/gl/objects.h"
 
 namespace {
 
@@ -86,22 +86,6 @@ void main() {
   colour = vec4(pow(clamp(c, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
 }
 )glsl";
-
-GLuint compile(GLenum kind, const std::string& source) {
-  const GLuint shader = glCreateShader(kind);
-  const char* text = source.c_str();
-  glShaderSource(shader, 1, &text, nullptr);
-  glCompileShader(shader);
-  GLint good = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-  if (good == 0) {
-    std::array<char, 4096> log{};
-    glGetShaderInfoLog(shader, log.size(), nullptr, log.data());
-    std::fprintf(stderr, "%s\n", log.data());
-    std::exit(1);
-  }
-  return shader;
-}
 
 struct Row {
   float position[3], normal[3], uv[2], material, rest[3];
@@ -209,26 +193,28 @@ int main(int argc, char** argv) {
   std::printf("%zu vertices, %zu triangles, %.2f s\n", body.vertices.size(),
               body.triangles.size() / 3, took.count());
 
-  auto context = ui::EglContext::create(2, nullptr);
+  auto context = gl::Context::create(2);
   if (!context) {
     std::fprintf(stderr, "%s\n", context.error().c_str());
     return 1;
   }
-  const GLuint program = glCreateProgram();
-  glAttachShader(program, compile(GL_VERTEX_SHADER, kVertexSource));
-  glAttachShader(program, compile(GL_FRAGMENT_SHADER,
-                                  std::string("#version 300 es\nprecision highp float;\n") +
-                                      emulator::studio::athleteAlbedoSource() + kLightSource));
-  glLinkProgram(program);
-  glUseProgram(program);
+  const auto made = gl::makeProgram("athlete", kVertexSource,
+                                    std::string("#version 300 es\nprecision highp float;\n") +
+                                        emulator::studio::athleteAlbedoSource() + kLightSource);
+  if (!made) {
+    std::fprintf(stderr, "%s\n", made.error().c_str());
+    return 1;
+  }
+  const gl::Program& program = *made;
+  glUseProgram(program.get());
   for (const AlbedoUniform& uniform : emulator::studio::albedoUniforms(shape)) {
-    const GLint place = glGetUniformLocation(program, uniform.name);
+    const GLint place = gl::uniform(program, uniform.name);
     if (uniform.components == 3)
       glUniform3fv(place, 1, uniform.value);
     else
       glUniform4fv(place, 1, uniform.value);
   }
-  glUniform1i(glGetUniformLocation(program, "plain"), static_cast<int>(number("plain")));
+  glUniform1i(gl::uniform(program, "plain"), static_cast<int>(number("plain")));
 
   const int size = static_cast<int>(number("size"));
   const int drawn = 2 * size;
@@ -297,8 +283,8 @@ int main(int argc, char** argv) {
                                    std::cos(angle) * number("distance"), number("up")};
       const Eigen::Matrix4f view =
           viewMatrix(eye, target, number("focal"), static_cast<float>(size));
-      glUniformMatrix4fv(glGetUniformLocation(program, "view"), 1, GL_FALSE, view.data());
-      glUniform3fv(glGetUniformLocation(program, "eye"), 1, eye.data());
+      glUniformMatrix4fv(gl::uniform(program, "view"), 1, GL_FALSE, view.data());
+      glUniform3fv(gl::uniform(program, "eye"), 1, eye.data());
       glClearColor(0.45F, 0.47F, 0.50F, 1);
       glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(triangles.size()), GL_UNSIGNED_INT,

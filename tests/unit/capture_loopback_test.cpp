@@ -8,7 +8,7 @@
 
 #include "appliance/capture/loopback.h"
 #include "appliance/trace/trace_file.h"
-#include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 

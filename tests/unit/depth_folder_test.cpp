@@ -8,11 +8,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "hal/openni/folder_recording.h"
 #include "hal/openni/folder_sensor.h"
 #include "hal/openni/folder_writer.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -31,16 +31,6 @@ constexpr std::uint32_t kHeight = 24;
 
 class Folder : public testing::Test {
  public:
-  Folder() {
-    std::string pattern = fs::temp_directory_path() / "kagami-folder-XXXXXX";
-    scratch_ = ::mkdtemp(pattern.data());
-    folder_ = scratch_ / "recording";
-  }
-  ~Folder() override {
-    std::error_code ignored;
-    fs::remove_all(scratch_, ignored);
-  }
-
   /// Five pictures, the third of which was lost.
   void write(ColourFile colour = ColourFile::kPng, bool with_colour = true) {
     FolderWriter writer(folder_, colour);
@@ -79,8 +69,8 @@ class Folder : public testing::Test {
     std::ofstream(folder_ / name) << text;
   }
 
-  fs::path scratch_;
-  fs::path folder_;
+  test::TemporaryFolder scratch_;
+  fs::path folder_ = scratch_ / "recording";
 };
 
 TEST_F(Folder, IsReadAsItWasWritten) {

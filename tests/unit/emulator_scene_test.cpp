@@ -10,6 +10,7 @@
 #include "hal/emulated/rig/recording_scene.h"
 #include "hal/emulated/rig/stamp_code.h"
 #include "hal/emulated/rig/stamp_scene.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -98,42 +99,27 @@ TEST(ArcRig, LooksAtTheTargetFromTheArc) {
   }
 }
 
-/// A folder that goes away with the test.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "kagami-scene-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+void write(const test::TemporaryFolder& folder, const std::string& name, const std::string& text) {
+  std::ofstream(folder / name) << text;
+}
 
 TEST(RecordingScene, SaysWhatIsWrongWithAFolder) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const auto error = [&] {
     const auto scene = RecordingScene::open(folder.path());
     return scene ? std::string("opened") : scene.error();
   };
   EXPECT_NE(error().find("rig.toml"), std::string::npos);
-  folder.write("rig.toml", "format = 2\n");
+  write(folder, "rig.toml", "format = 2\n");
   EXPECT_NE(error().find("format = 1"), std::string::npos);
-  folder.write("rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\n");
+  write(folder, "rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\n");
   EXPECT_NE(error().find("rig.toml:2: "), std::string::npos) << error();
   EXPECT_NE(error().find("image_size_px"), std::string::npos);
-  folder.write("rig.toml", "format = 1\n[[camera]\n");
+  write(folder, "rig.toml", "format = 1\n[[camera]\n");
   EXPECT_NE(error().find("rig.toml:2"), std::string::npos) << error();
-  folder.write("rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\nimage_size_px = [64, 32]\n");
+  write(folder, "rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\nimage_size_px = [64, 32]\n");
   EXPECT_NE(error().find("cam01.mp4"), std::string::npos) << error();
-  folder.write("cam01.mp4", "no video");
+  write(folder, "cam01.mp4", "no video");
   EXPECT_NE(error().find("cannot be read as a video"), std::string::npos) << error();
 }
 
@@ -149,11 +135,11 @@ std::string plainPicture(int width, int height, std::uint8_t red, std::uint8_t g
                          std::uint8_t blue);
 
 TEST(RecordingScene, PlaysPicturesInTheOrderOfTheirNamesAndStartsAgain) {
-  const Folder folder;
-  folder.write("rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\nimage_size_px = [4, 2]\n");
+  const test::TemporaryFolder folder;
+  write(folder, "rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\nimage_size_px = [4, 2]\n");
   std::filesystem::create_directory(folder.path() / "cam01");
-  folder.write("cam01/a.png", plainPicture(4, 2, 255, 0, 0));
-  folder.write("cam01/b.png", plainPicture(4, 2, 188, 188, 0));
+  write(folder, "cam01/a.png", plainPicture(4, 2, 255, 0, 0));
+  write(folder, "cam01/b.png", plainPicture(4, 2, 188, 188, 0));
   auto scene = RecordingScene::open(folder.path());
   ASSERT_TRUE(scene) << scene.error();
   EXPECT_EQ(scene->pictureCount(), 2u);
@@ -166,10 +152,10 @@ TEST(RecordingScene, PlaysPicturesInTheOrderOfTheirNamesAndStartsAgain) {
 }
 
 TEST(RecordingScene, RefusesPicturesOfAnotherSize) {
-  const Folder folder;
-  folder.write("rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\nimage_size_px = [8, 2]\n");
+  const test::TemporaryFolder folder;
+  write(folder, "rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\nimage_size_px = [8, 2]\n");
   std::filesystem::create_directory(folder.path() / "cam01");
-  folder.write("cam01/a.png", plainPicture(4, 2, 1, 2, 3));
+  write(folder, "cam01/a.png", plainPicture(4, 2, 1, 2, 3));
   const auto scene = RecordingScene::open(folder.path());
   ASSERT_FALSE(scene);
   EXPECT_NE(scene.error().find("4x2"), std::string::npos) << scene.error();

@@ -12,6 +12,7 @@
 
 #include "rt/dma_buf.h"
 #include "rt/memory.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -19,22 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kPageBytes = 4096;
 constexpr std::size_t kArenaBytes = 64 * kPageBytes;
-
-/// A folder for one test, removed at its end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "rt_dma_buf_XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 rt::LockedArena memoryFileArena() {
   auto arena = rt::LockedArena::create(kArenaBytes, 0, rt::ArenaBacking::kMemoryFile);
@@ -53,13 +38,13 @@ std::vector<std::byte> bytesOf(const rt::DmaBuf& buffer, std::size_t bytes) {
 }
 
 TEST(MostDmaBufBytes, IsTheKernelsParameter) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "size_limit_mb") << "256\n";
   EXPECT_EQ(rt::mostDmaBufBytes(folder.path()), std::size_t{256} << 20U);
 }
 
 TEST(MostDmaBufBytes, IsTheKernelsDefaultWhereTheParameterIsMissingOrNonsense) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_EQ(rt::mostDmaBufBytes(folder.path()), std::size_t{64} << 20U);
   for (const char* nonsense : {"", "0\n", "-5\n", "many\n"}) {
     std::ofstream(folder.path() / "size_limit_mb") << nonsense;

@@ -70,16 +70,6 @@ TEST(PeriodicSchedule, NudgeMovesAllComingDeadlines) {
   EXPECT_EQ(schedule.deadline(), kFirst - 300us + kPeriod);
 }
 
-TEST(PeriodicSchedule, SetPhaseTakesTheShorterWay) {
-  for (const auto shift : {0ms, 10ms, -10ms, 12ms, -12ms}) {
-    for (const int periods : {-7, 0, 7}) {
-      PeriodicSchedule schedule(kFirst, kPeriod);
-      schedule.setPhase(kFirst + shift + periods * kPeriod);
-      EXPECT_EQ(schedule.deadline(), kFirst + shift);
-    }
-  }
-}
-
 TEST(PeriodicLoop, WakesAtItsDeadlinesAndNeverBefore) {
   const auto begin = rt::now();
   rt::PeriodicLoop loop(PeriodicSchedule(begin + 1ms, 2ms));

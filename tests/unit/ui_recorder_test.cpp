@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
-#include <unistd.h>
 
+#include "tests/support/temporary_folder.h"
 #include "ui-kms/film.h"
 #include "ui-kms/recorder.h"
 
@@ -44,16 +44,9 @@ class PlainPicture final : public ui::PictureSource {
 
 class RecorderTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "kagami-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::unique_ptr<ui::Recorder> makeRecorder(double video_hz, std::uint32_t buffers = 6) {
-    auto recorder =
-        ui::Recorder::create({folder_, 64, video_hz, buffers}, {kWidthPx, kHeightPx, 60}, source_);
+    auto recorder = ui::Recorder::create({folder_.path(), 64, video_hz, buffers},
+                                         {kWidthPx, kHeightPx, 60}, source_);
     EXPECT_TRUE(recorder) << recorder.error();
     return recorder ? std::move(*recorder) : nullptr;
   }
@@ -85,7 +78,7 @@ class RecorderTest : public testing::Test {
     return all;
   }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
   PlainPicture source_;
 };
 

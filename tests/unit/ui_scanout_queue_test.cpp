@@ -118,7 +118,7 @@ TEST(ScanoutQueue, AFlipFromBeforeALossIsIgnored) {
 
 TEST(ScanoutQueue, KeepsTheNewestFlipsThatNobodyTakes) {
   ScanoutQueue queue(1);
-  constexpr std::uint64_t kMore = ScanoutQueue::kFlipsKept + 5;
+  constexpr std::uint64_t kMore = ui::FlipList::kKept + 5;
   for (std::uint64_t id = 1; id <= kMore; ++id) {
     show(queue, id);
     queue.onFlip(id, id, at(static_cast<int>(id)));

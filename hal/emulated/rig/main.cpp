@@ -14,10 +14,10 @@
 #include "hal/emulated/rig/run_record.h"
 #include "hal/emulated/rig/socket.h"
 #include "hal/emulated/rig/stamp_scene.h"
-#include "hal/emulated/rig/stop_signals.h"
 #include "hal/emulated/studio/progress_bar.h"
 #include "hal/emulated/studio/studio_scene.h"
 #include "hal/emulated/studio/truth.h"
+#include "rt/stop_signals.h"
 
 namespace {
 
@@ -182,7 +182,7 @@ std::expected<ScenePointer, std::string> openScene(const Arguments& a) {
   return std::make_unique<emulator::StampScene>(std::move(*stamp));
 }
 
-int serve(Arguments& a) {
+int serve(Arguments& a, const rt::StopSignals& stop) {
   const auto address = emulator::parseAddress(a.first_address);
   if (!address) return fail("--first-address " + address.error());
   a.rig.first_address = *address;
@@ -197,7 +197,7 @@ int serve(Arguments& a) {
   const double cpu_at_ready = emulator::processCpuSeconds();
   std::puts("ready");
   std::fflush(stdout);
-  if (auto served = rig->run(); !served) return fail(served.error());
+  if (auto served = rig->run(stop); !served) return fail(served.error());
   if (auto closed = closeStudio(a, **scene); !closed) return fail(closed.error());
 
   const auto reason =
@@ -234,7 +234,7 @@ int convert(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  emulator::blockStopSignals();
+  const rt::StopSignals stop;  // before any thread
   CLI::App app("Emulates GigE Vision cameras and the wire that triggers them.");
   Arguments arguments;
   declare(app, arguments);
@@ -250,5 +250,5 @@ int main(int argc, char** argv) {
   fault->fallthrough();  // --first-address and --fault-port tell which emulator
   CLI11_PARSE(app, argc, argv);
   if (*fault) return commandFault(arguments);
-  return *converter ? convert(arguments) : serve(arguments);
+  return *converter ? convert(arguments) : serve(arguments, stop);
 }

@@ -17,7 +17,6 @@
 #include "hal/emulated/rig/device_xml.h"
 #include "hal/emulated/rig/gvcp.h"
 #include "hal/emulated/rig/socket.h"
-#include "hal/emulated/rig/stop_signals.h"
 #include "hal/emulated/rig/trigger_wire.h"
 
 namespace emulator {
@@ -81,7 +80,6 @@ struct Rig::State {
   std::optional<FaultPort> fault_port;
   RigContext context;
   UniqueFd epoll;
-  UniqueFd signals;
   UniqueFd broadcast;
   UniqueFd wire;
   std::vector<UniqueFd> control;
@@ -95,11 +93,9 @@ struct Rig::State {
 
 std::expected<void, std::string> Rig::State::open() {
   epoll = UniqueFd(::epoll_create1(EPOLL_CLOEXEC));
-  signals = openStopSignals();
-  if (epoll.get() < 0 || signals.get() < 0) {
+  if (epoll.get() < 0) {
     return std::unexpected(std::string("cannot create the event loop: ") + std::strerror(errno));
   }
-  watch(signals.get(), kSignal);
 
   auto wire_socket = bindUdp(kLoopback, options.wire_port, false);
   if (!wire_socket) return std::unexpected("trigger wire: " + wire_socket.error());
@@ -281,8 +277,9 @@ std::expected<Rig, std::string> Rig::open(Scene& scene, const RigOptions& option
   return Rig(std::move(state));
 }
 
-std::expected<void, std::string> Rig::run() {
+std::expected<void, std::string> Rig::run(const rt::StopSignals& stop) {
   State& s = *state_;
+  s.watch(stop.fd(), kSignal);
   s.enterRealtime();
   const rt::Timestamp start = rt::now();
   const auto end = s.options.run_for ? start + *s.options.run_for : rt::Timestamp::max();

@@ -11,6 +11,7 @@
 #include "hal/emulated/rig/run_record.h"
 #include "hal/emulated/rig/scene.h"
 #include "rt/clock.h"
+#include "rt/stop_signals.h"
 
 namespace emulator {
 
@@ -40,8 +41,8 @@ class Rig {
   Rig& operator=(Rig&&) noexcept;
   ~Rig();
 
-  /// Serves until SIGINT, SIGTERM (blocked by blockStopSignals()) or the end of the run time.
-  [[nodiscard]] std::expected<void, std::string> run();
+  /// Serves until @p stop or the end of the run time.
+  [[nodiscard]] std::expected<void, std::string> run(const rt::StopSignals& stop);
 
   [[nodiscard]] const Counters& counters() const;
   [[nodiscard]] const LatenessHistogram& lateness() const;

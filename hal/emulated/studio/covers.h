@@ -13,8 +13,7 @@ namespace emulator::studio {
 using CoverPictures = std::array<cv::Mat, kCoverCount>;
 [[nodiscard]] CoverPictures drawCovers(std::uint64_t seed);
 
-/// Fine grain of floor strips that repeats every kGrainTile_m: RGBA of which 128 is neutral.
-inline constexpr float kGrainTile_m = 1.6f;
+/// Fine grain of floor strips, to be repeated every 1.6 m: RGBA of which 128 is neutral.
 [[nodiscard]] cv::Mat drawFloorGrain(std::uint64_t seed);
 
 }  // namespace emulator::studio

@@ -3,10 +3,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "hal/emulated/studio/covers.h"
-#include "hal/emulated/studio/gl.h"
 #include "hal/emulated/studio/hall.h"
 #include "hal/emulated/studio/hall_renderer.h"
 #include "hal/emulated/studio/people_renderer.h"
+#include "hal/emulated/studio/studio_gl.h"
 #include "hal/emulated/studio/world.h"
 
 namespace emulator::studio {
@@ -16,7 +16,7 @@ std::expected<cv::Mat, std::string> renderDepth(const StudioOptions& options, st
   const StudioRig rig = makeStudioRig(options.cameras, options.size, options.seed);
   if (camera >= rig.cameras.size())
     return std::unexpected("there is no camera " + std::to_string(camera + 1));
-  auto context = GlContext::create();
+  auto context = openContext();
   if (!context) return std::unexpected(context.error());
   // Distances need neither light nor paint.
   const std::vector<Surface> hall = buildHall(options.seed);

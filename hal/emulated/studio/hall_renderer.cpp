@@ -141,10 +141,10 @@ int kindOf(Cover cover) {
   }
 }
 
-GlTexture upload(const cv::Mat& rgba, GLenum format) {
+gl::Texture upload(const cv::Mat& rgba, GLenum format) {
   const int levels = static_cast<int>(std::log2(std::max(rgba.cols, rgba.rows))) + 1;
-  GlTexture texture =
-      makeTexture(format, rgba.cols, rgba.rows, levels, GL_LINEAR_MIPMAP_LINEAR, GL_REPEAT);
+  gl::Texture texture =
+      gl::makeTexture(format, rgba.cols, rgba.rows, GL_LINEAR_MIPMAP_LINEAR, GL_REPEAT, levels);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, rgba.cols, rgba.rows, GL_RGBA, GL_UNSIGNED_BYTE,
                   rgba.data);
   glGenerateMipmap(GL_TEXTURE_2D);
@@ -156,7 +156,7 @@ GlTexture upload(const cv::Mat& rgba, GLenum format) {
   return texture;
 }
 
-void bindTexture(int unit, const GlTexture& texture) {
+void bindTexture(int unit, const gl::Texture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, texture.get());
 }
@@ -165,7 +165,9 @@ void bindTexture(int unit, const GlTexture& texture) {
 
 HallRenderer::HallRenderer(const std::vector<Surface>& surfaces, const CoverPictures& covers,
                            const cv::Mat& floor_grain, const LightMap& light)
-    : vertex_array_(makeVertexArray()), vertices_(makeBuffer()), indices_(makeBuffer()) {
+    : vertex_array_(gl::makeVertexArray()),
+      vertices_(gl::makeBuffer()),
+      indices_(gl::makeBuffer()) {
   std::vector<Corner> corners;
   std::vector<std::uint32_t> indices;
   for (std::size_t cover = 0; cover < kCoverCount; ++cover) {
@@ -217,8 +219,7 @@ HallRenderer::HallRenderer(const std::vector<Surface>& surfaces, const CoverPict
 
   for (std::size_t i = 0; i < kCoverCount; ++i) covers_[i] = upload(covers[i], GL_SRGB8_ALPHA8);
   grain_ = upload(floor_grain, GL_SRGB8_ALPHA8);
-  light_ = makeTexture(GL_RGBA32F, static_cast<int>(light.width), static_cast<int>(light.height), 1,
-                       GL_LINEAR, GL_CLAMP_TO_EDGE);
+  light_ = gl::makeTexture(GL_RGBA32F, light.width, light.height, GL_LINEAR, GL_CLAMP_TO_EDGE);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(light.width),
                   static_cast<GLsizei>(light.height), GL_RGBA, GL_FLOAT, light.texels.data());
   surface_program_ = makeProgram("hall", kSurfaceVertex, kSurfaceFragment);
@@ -264,7 +265,7 @@ void HallRenderer::drawSurfaces(const StudioCamera& camera, const Pinhole& pinho
   const Eigen::Matrix3f rotation = camera.rotation().cast<float>();
   const Eigen::Vector3f eye = camera.centre().cast<float>();
   const auto& t = camera.model.translation_m;
-  const GlProgram& program = surface_program_;
+  const gl::Program& program = surface_program_;
   glUseProgram(program.get());
   glUniformMatrix3fv(uniform(program, "rotation"), 1, GL_FALSE, rotation.data());
   glUniform3f(uniform(program, "translation"), static_cast<float>(t[0]), static_cast<float>(t[1]),
@@ -306,8 +307,8 @@ void HallRenderer::drawSurfaces(const StudioCamera& camera, const Pinhole& pinho
 }
 
 Backdrop HallRenderer::draw(const StudioCamera& camera) {
-  const auto target = [](const GlTexture& colour, const GlTexture* depth) {
-    GlFramebuffer framebuffer = makeFramebuffer();
+  const auto target = [](const gl::Texture& colour, const gl::Texture* depth) {
+    gl::Framebuffer framebuffer = gl::makeFramebuffer();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour.get(), 0);
     const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
@@ -317,7 +318,7 @@ Backdrop HallRenderer::draw(const StudioCamera& camera) {
     return framebuffer;
   };
   const auto depthBuffer = [](const Pinhole& size) {
-    GlRenderbuffer buffer = makeRenderbuffer();
+    gl::Renderbuffer buffer = gl::makeRenderbuffer();
     glBindRenderbuffer(GL_RENDERBUFFER, buffer.get());
     glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, size.width, size.height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffer.get());
@@ -326,22 +327,22 @@ Backdrop HallRenderer::draw(const StudioCamera& camera) {
 
   {
     const Pinhole half = widen(camera, kMirrorScale);
-    mirrored_ = makeTexture(GL_RGBA16F, half.width, half.height, 6, GL_LINEAR_MIPMAP_LINEAR,
-                            GL_CLAMP_TO_EDGE);
-    const GlFramebuffer framebuffer = target(mirrored_, nullptr);
-    const GlRenderbuffer depth = depthBuffer(half);
+    mirrored_ = gl::makeTexture(GL_RGBA16F, half.width, half.height, GL_LINEAR_MIPMAP_LINEAR,
+                                GL_CLAMP_TO_EDGE, 6);
+    const gl::Framebuffer framebuffer = target(mirrored_, nullptr);
+    const gl::Renderbuffer depth = depthBuffer(half);
     drawSurfaces(camera, half, true);
     bindTexture(3, mirrored_);
     glGenerateMipmap(GL_TEXTURE_2D);
   }
   const Pinhole wide = widen(camera, kOversampling);
-  const GlTexture wide_colour =
-      makeTexture(GL_RGBA16F, wide.width, wide.height, 1, GL_LINEAR, GL_CLAMP_TO_EDGE);
-  const GlTexture wide_depth =
-      makeTexture(GL_R32F, wide.width, wide.height, 1, GL_NEAREST, GL_CLAMP_TO_EDGE);
+  const gl::Texture wide_colour =
+      gl::makeTexture(GL_RGBA16F, wide.width, wide.height, GL_LINEAR, GL_CLAMP_TO_EDGE);
+  const gl::Texture wide_depth =
+      gl::makeTexture(GL_R32F, wide.width, wide.height, GL_NEAREST, GL_CLAMP_TO_EDGE);
   {
-    const GlFramebuffer framebuffer = target(wide_colour, &wide_depth);
-    const GlRenderbuffer depth = depthBuffer(wide);
+    const gl::Framebuffer framebuffer = target(wide_colour, &wide_depth);
+    const gl::Renderbuffer depth = depthBuffer(wide);
     drawSurfaces(camera, wide, false);
   }
 
@@ -353,9 +354,10 @@ Backdrop HallRenderer::draw(const StudioCamera& camera) {
                .depth_m = {}};
   const auto width = static_cast<int>(out.width);
   const auto height = static_cast<int>(out.height);
-  const GlTexture colour = makeTexture(GL_RGBA32F, width, height, 1, GL_NEAREST, GL_CLAMP_TO_EDGE);
-  const GlTexture depth = makeTexture(GL_R32F, width, height, 1, GL_NEAREST, GL_CLAMP_TO_EDGE);
-  const GlFramebuffer framebuffer = target(colour, &depth);
+  const gl::Texture colour =
+      gl::makeTexture(GL_RGBA32F, width, height, GL_NEAREST, GL_CLAMP_TO_EDGE);
+  const gl::Texture depth = gl::makeTexture(GL_R32F, width, height, GL_NEAREST, GL_CLAMP_TO_EDGE);
+  const gl::Framebuffer framebuffer = target(colour, &depth);
   glDisable(GL_DEPTH_TEST);
   glViewport(0, 0, width, height);
   glUseProgram(lens_program_.get());

@@ -6,8 +6,8 @@
 
 #include "hal/emulated/studio/backdrop.h"
 #include "hal/emulated/studio/covers.h"
-#include "hal/emulated/studio/gl.h"
 #include "hal/emulated/studio/light_bake.h"
+#include "hal/emulated/studio/studio_gl.h"
 #include "hal/emulated/studio/surfaces.h"
 
 namespace emulator::studio {
@@ -16,7 +16,7 @@ namespace emulator::studio {
 /// laid over it. First what the varnished floor mirrors, then the hall without a lens at twice the
 /// size, then that through the lens.
 ///
-/// Threads  The thread of the current GlContext.
+/// Threads  The thread of the current gl::Context.
 class HallRenderer {
  public:
   HallRenderer(const std::vector<Surface>& surfaces, const CoverPictures& covers,
@@ -39,15 +39,15 @@ class HallRenderer {
   static Pinhole widen(const StudioCamera& camera, double scale);
 
   std::vector<Batch> batches_;
-  GlVertexArray vertex_array_;
-  GlBuffer vertices_;
-  GlBuffer indices_;
-  std::array<GlTexture, kCoverCount> covers_;
-  GlTexture grain_;
-  GlTexture light_;
-  GlTexture mirrored_;  // of the last camera; bound by drawSurfaces
-  GlProgram surface_program_;
-  GlProgram lens_program_;
+  gl::VertexArray vertex_array_;
+  gl::Buffer vertices_;
+  gl::Buffer indices_;
+  std::array<gl::Texture, kCoverCount> covers_;
+  gl::Texture grain_;
+  gl::Texture light_;
+  gl::Texture mirrored_;  // of the last camera; bound by drawSurfaces
+  gl::Program surface_program_;
+  gl::Program lens_program_;
 };
 
 }  // namespace emulator::studio

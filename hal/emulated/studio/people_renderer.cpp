@@ -11,6 +11,7 @@
 #include "hal/emulated/studio/hall_size.h"
 #include "hal/emulated/studio/lens_glsl.h"
 #include "hal/emulated/studio/people_glsl.h"
+#include "hal/emulated/studio/shadow_glsl.h"
 
 namespace emulator::studio {
 namespace {
@@ -36,8 +37,8 @@ float value(double v) {
 }
 
 /// A program of which only what the vertex shader gives is wanted.
-GlProgram makeCapture(const char* name, const std::string& vertex, const char* captured) {
-  GlProgram program = makeProgram(name, vertex, kNoFragment);
+gl::Program makeCapture(const char* name, const std::string& vertex, const char* captured) {
+  gl::Program program = makeProgram(name, vertex, kNoFragment);
   glTransformFeedbackVaryings(program.get(), 1, &captured, GL_INTERLEAVED_ATTRIBS);
   glLinkProgram(program.get());
   return program;
@@ -63,16 +64,16 @@ void attribute(GLuint index, GLint size, std::size_t stride, std::size_t offset)
 }  // namespace
 
 PeopleRenderer::Mesh PeopleRenderer::upload(const Body& body) {
-  Mesh mesh{.draw = makeVertexArray(),
-            .light = makeVertexArray(),
-            .posed = makeBuffer(),
-            .fallen = makeBuffer(),
-            .paint = makeBuffer(),
-            .indices = makeBuffer(),
+  Mesh mesh{.draw = gl::makeVertexArray(),
+            .light = gl::makeVertexArray(),
+            .posed = gl::makeBuffer(),
+            .fallen = gl::makeBuffer(),
+            .paint = gl::makeBuffer(),
+            .indices = gl::makeBuffer(),
             .count = static_cast<GLsizei>(body.triangles.size()),
             .vertices = static_cast<GLsizei>(body.vertices.size())};
   const std::size_t count = body.vertices.size();
-  const auto reserve = [&](const GlBuffer& buffer, std::size_t vertex_bytes, GLenum use) {
+  const auto reserve = [&](const gl::Buffer& buffer, std::size_t vertex_bytes, GLenum use) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer.get());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * vertex_bytes), nullptr, use);
   };
@@ -107,8 +108,8 @@ void PeopleRenderer::paint(const Mesh& mesh, const Body& body) const {
                     {v.uv.x(), v.uv.y()},
                     static_cast<float>(v.material)});
   }
-  const GlVertexArray vertex_array = makeVertexArray();
-  const GlBuffer buffer = makeBuffer();
+  const gl::VertexArray vertex_array = gl::makeVertexArray();
+  const gl::Buffer buffer = gl::makeBuffer();
   glBindVertexArray(vertex_array.get());
   glBindBuffer(GL_ARRAY_BUFFER, buffer.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest.size() * sizeof(RestVertex)),
@@ -130,7 +131,7 @@ void PeopleRenderer::paint(const Mesh& mesh, const Body& body) const {
 
 PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::vector<Lamp>& lamps,
                                const LightProbes& probes, const cv::Mat& floor_light)
-    : cast_(cast), lamps_(lamps), probes_(probes), no_vertices_(makeVertexArray()) {
+    : cast_(cast), lamps_(lamps), probes_(probes), no_vertices_(gl::makeVertexArray()) {
   for (const CastMember& member : cast) {
     surfaces_.push_back(upload(member.surface));
     shadows_.push_back(upload(member.shadow));
@@ -149,7 +150,7 @@ PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::v
 
   GLuint maps = 0;
   glGenTextures(1, &maps);
-  shadow_maps_ = GlTexture(maps);
+  shadow_maps_ = gl::Texture(maps);
   glBindTexture(GL_TEXTURE_2D_ARRAY, maps);
   glTexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_DEPTH_COMPONENT32F, kShadowSide, kShadowSide,
                  kKeyLamps);
@@ -157,15 +158,15 @@ PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::v
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  shadow_framebuffer_ = makeFramebuffer();
+  shadow_framebuffer_ = gl::makeFramebuffer();
 
   floor_light_ =
-      makeTexture(GL_R32F, floor_light.cols, floor_light.rows, 1, GL_NEAREST, GL_CLAMP_TO_EDGE);
+      gl::makeTexture(GL_R32F, floor_light.cols, floor_light.rows, GL_NEAREST, GL_CLAMP_TO_EDGE);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, floor_light.cols, floor_light.rows, GL_RED, GL_FLOAT,
                   floor_light.data);
-  floor_map_ = makeTexture(GL_RGBA32F, FloorShade::kColumns, FloorShade::kRows, 1, GL_NEAREST,
-                           GL_CLAMP_TO_EDGE);
-  floor_framebuffer_ = makeFramebuffer();
+  floor_map_ = gl::makeTexture(GL_RGBA32F, FloorShade::kColumns, FloorShade::kRows, GL_NEAREST,
+                               GL_CLAMP_TO_EDGE);
+  floor_framebuffer_ = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, floor_framebuffer_.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, floor_map_.get(), 0);
   for (std::size_t i = 0; i < cast.size(); ++i) paint(surfaces_[i], cast[i].surface);
@@ -174,13 +175,13 @@ PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::v
 void PeopleRenderer::makeTargets(int width, int height) {
   if (target_size_.width >= width && target_size_.height >= height) return;
   target_size_ = {std::max(width, target_size_.width), std::max(height, target_size_.height)};
-  target_colour_ = makeTexture(GL_RGBA8, target_size_.width, target_size_.height, 1, GL_NEAREST,
-                               GL_CLAMP_TO_EDGE);
-  target_depth_ = makeRenderbuffer();
+  target_colour_ = gl::makeTexture(GL_RGBA8, target_size_.width, target_size_.height, GL_NEAREST,
+                                   GL_CLAMP_TO_EDGE);
+  target_depth_ = gl::makeRenderbuffer();
   glBindRenderbuffer(GL_RENDERBUFFER, target_depth_.get());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, target_size_.width,
                         target_size_.height);
-  target_ = makeFramebuffer();
+  target_ = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, target_.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target_colour_.get(),
                          0);
@@ -192,7 +193,7 @@ void PeopleRenderer::addCamera(const StudioCamera& camera, const std::vector<flo
   const auto width = static_cast<int>(camera.model.image_size.width);
   const auto height = static_cast<int>(camera.model.image_size.height);
   View view{.camera = camera,
-            .depth = makeTexture(GL_R32F, width, height, 1, GL_NEAREST, GL_CLAMP_TO_EDGE)};
+            .depth = gl::makeTexture(GL_R32F, width, height, GL_NEAREST, GL_CLAMP_TO_EDGE)};
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RED, GL_FLOAT, depth_m.data());
   views_.push_back(std::move(view));
   makeTargets(width, height);
@@ -220,7 +221,7 @@ void PeopleRenderer::setMoment(const Moment& moment) {
   shadeFloor(moment.second);
 }
 
-void PeopleRenderer::setLamps(const GlProgram& program, double second) const {
+void PeopleRenderer::setLamps(const gl::Program& program, double second) const {
   std::array<float, 3 * kKeyLamps> at{};
   std::array<float, 3 * kKeyLamps> light{};
   std::array<float, 2 * kKeyLamps> half{};
@@ -307,7 +308,7 @@ void PeopleRenderer::shadeFloor(double second) {
   cv::extractChannel(rgba, floor_shade_.share, 0);
 }
 
-void PeopleRenderer::setCamera(const GlProgram& program, const StudioCamera& camera) const {
+void PeopleRenderer::setCamera(const gl::Program& program, const StudioCamera& camera) const {
   const CameraModel& m = camera.model;
   const Eigen::Matrix3f rotation = camera.rotation().cast<float>();
   const Eigen::Vector3f eye = camera.centre().cast<float>();
@@ -427,11 +428,11 @@ cv::Mat PeopleRenderer::drawDepth(std::size_t camera) {
   const View& view = views_[camera];
   const auto width = static_cast<int>(view.camera.model.image_size.width);
   const auto height = static_cast<int>(view.camera.model.image_size.height);
-  const GlTexture target = makeTexture(GL_R32F, width, height, 1, GL_NEAREST, GL_CLAMP_TO_EDGE);
-  const GlRenderbuffer depth = makeRenderbuffer();
+  const gl::Texture target = gl::makeTexture(GL_R32F, width, height, GL_NEAREST, GL_CLAMP_TO_EDGE);
+  const gl::Renderbuffer depth = gl::makeRenderbuffer();
   glBindRenderbuffer(GL_RENDERBUFFER, depth.get());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
-  const GlFramebuffer framebuffer = makeFramebuffer();
+  const gl::Framebuffer framebuffer = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.get(), 0);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.get());

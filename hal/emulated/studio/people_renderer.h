@@ -8,11 +8,11 @@
 
 #include "hal/emulated/studio/athlete/body.h"
 #include "hal/emulated/studio/backdrop.h"
-#include "hal/emulated/studio/gl.h"
 #include "hal/emulated/studio/lamps.h"
 #include "hal/emulated/studio/light_bake.h"
 #include "hal/emulated/studio/moment.h"
 #include "hal/emulated/studio/posed_mesh.h"
+#include "hal/emulated/studio/studio_gl.h"
 
 namespace emulator::studio {
 
@@ -42,7 +42,7 @@ struct FloorShade {
 /// Draws people: what all cameras share of a moment once (pose, shadows, light on every vertex),
 /// then each camera's view of it.
 ///
-/// Threads  The thread of the current GlContext.
+/// Threads  The thread of the current gl::Context.
 class PeopleRenderer {
  public:
   PeopleRenderer(const std::vector<CastMember>& cast, const std::vector<Lamp>& lamps,
@@ -59,18 +59,18 @@ class PeopleRenderer {
 
  private:
   struct Mesh {
-    GlVertexArray draw;
-    GlVertexArray light;
-    GlBuffer posed;
-    GlBuffer fallen;
-    GlBuffer paint;
-    GlBuffer indices;
+    gl::VertexArray draw;
+    gl::VertexArray light;
+    gl::Buffer posed;
+    gl::Buffer fallen;
+    gl::Buffer paint;
+    gl::Buffer indices;
     GLsizei count = 0;
     GLsizei vertices = 0;
   };
   struct View {
     StudioCamera camera;
-    GlTexture depth;
+    gl::Texture depth;
   };
   struct Shown {
     std::size_t body = 0;
@@ -83,8 +83,8 @@ class PeopleRenderer {
   void drawShadows(double second);
   void lightBodies(double second);
   void shadeFloor(double second);
-  void setLamps(const GlProgram& program, double second) const;
-  void setCamera(const GlProgram& program, const StudioCamera& camera) const;
+  void setLamps(const gl::Program& program, double second) const;
+  void setCamera(const gl::Program& program, const StudioCamera& camera) const;
   [[nodiscard]] std::vector<cv::Rect> areasOf(const StudioCamera& camera) const;
   void drawStep(const View& view, const cv::Rect& area, float instant) const;
   void makeTargets(int width, int height);
@@ -98,22 +98,22 @@ class PeopleRenderer {
   std::vector<Shown> shown_;
   FloorShade floor_shade_;
 
-  GlProgram shadow_program_;
-  GlProgram light_program_;
-  GlProgram paint_program_;
-  GlProgram floor_program_;
-  GlProgram body_program_;
-  GlProgram depth_program_;
-  GlTexture shadow_maps_;
-  GlFramebuffer shadow_framebuffer_;
-  GlTexture floor_light_;
-  GlTexture floor_map_;
-  GlFramebuffer floor_framebuffer_;
-  GlVertexArray no_vertices_;
+  gl::Program shadow_program_;
+  gl::Program light_program_;
+  gl::Program paint_program_;
+  gl::Program floor_program_;
+  gl::Program body_program_;
+  gl::Program depth_program_;
+  gl::Texture shadow_maps_;
+  gl::Framebuffer shadow_framebuffer_;
+  gl::Texture floor_light_;
+  gl::Texture floor_map_;
+  gl::Framebuffer floor_framebuffer_;
+  gl::VertexArray no_vertices_;
   cv::Size target_size_;
-  GlTexture target_colour_;
-  GlRenderbuffer target_depth_;
-  GlFramebuffer target_;
+  gl::Texture target_colour_;
+  gl::Renderbuffer target_depth_;
+  gl::Framebuffer target_;
 };
 
 }  // namespace emulator::studio

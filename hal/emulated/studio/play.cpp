@@ -16,13 +16,13 @@
 #include <sys/resource.h>
 
 #include "hal/emulated/studio/covers.h"
-#include "hal/emulated/studio/gl.h"
 #include "hal/emulated/studio/hall.h"
 #include "hal/emulated/studio/hall_renderer.h"
 #include "hal/emulated/studio/moment_file.h"
 #include "hal/emulated/studio/people_renderer.h"
 #include "hal/emulated/studio/scene_cache.h"
 #include "hal/emulated/studio/sensor_view.h"
+#include "hal/emulated/studio/studio_gl.h"
 #include "hal/emulated/studio/world.h"
 #include "rt/memory.h"
 
@@ -229,7 +229,7 @@ void Play::State::storeBlock(std::uint32_t block) {
 
 void Play::State::work(std::size_t worker) {
   ::setpriority(PRIO_PROCESS, 0, 10);  // of this thread
-  auto context = GlContext::create();
+  auto context = openContext();
   if (context) drawBackdrops(worker);
   backdrops_drawn->arrive_and_wait();
   if (context && !stop) drawMoments(worker);
@@ -248,14 +248,12 @@ Play::~Play() {
 std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOptions& options,
                                                               const Progress& progress) {
   const auto start = Clock::now();
-  // As many contexts as processors, each drawing on its own; an operator's setting goes first.
-  ::setenv("LP_NUM_THREADS", "0", /*replace=*/0);
   auto state = std::make_unique<State>(options, progress);
   State& s = *state;
   {
-    auto context = GlContext::create();
+    auto context = openContext();
     if (!context) return std::unexpected(context.error());
-    s.renderer = (*context)->renderer();
+    s.renderer = (*context)->renderer() + ", " + (*context)->version();
   }
   const std::uint64_t wanted = std::uint64_t{options.cameras} *
                                (s.moments.size() * kUsualMomentBytes +

@@ -3,7 +3,7 @@
 #include "hal/aravis/gobject.h"
 #include "hal/aravis/profile_push.h"
 #include "hal/aravis/stream_socket.h"
-#include "tests/bench/reception/receiver.h"
+#include "tests/bench/reception/stream_receiver.h"
 
 namespace bench {
 namespace {
@@ -23,9 +23,8 @@ class AravisStream {
   }
 
   std::expected<void, std::string> open(const hal::CameraProfile& profile,
-                                        const rt::ThreadConfig& receive, std::uint32_t buffers,
-                                        std::size_t frame_bytes) {
-    receive_ = receive;
+                                        const ReceptionSetup& setup) {
+    receive_ = setup.receive;
     GlibError error;
     camera_.reset(arv_camera_new(profile.address.c_str(), error.out()));
     if (!camera_) return std::unexpected(profile.address + ": " + error.message());
@@ -42,8 +41,8 @@ class AravisStream {
                  "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED,  //
                  "socket-buffer-size", socket_buffer,                 //
                  "initial-packet-timeout", 0U, nullptr);
-    for (std::uint32_t i = 0; i < buffers; ++i) {
-      arv_stream_push_buffer(raw_, arv_buffer_new_allocate(frame_bytes));
+    for (std::uint32_t i = 0; i < setup.slots(); ++i) {
+      arv_stream_push_buffer(raw_, arv_buffer_new_allocate(setup.frameBytes()));
     }
     arv_camera_start_acquisition(camera_.get(), error.out());
     if (error) return std::unexpected(profile.address + ": " + error.message());
@@ -74,33 +73,10 @@ class AravisStream {
   std::atomic<std::uint64_t> frames_{0};
 };
 
-class AravisReceiver final : public Receiver {
- public:
-  std::expected<void, std::string> open(const ReceptionSetup& setup) {
-    for (const hal::CameraProfile& profile : setup.cameras) {
-      streams_.push_back(std::make_unique<AravisStream>());
-      auto opened =
-          streams_.back()->open(profile, setup.receive, setup.slots(), setup.frameBytes());
-      if (!opened) return opened;
-    }
-    return {};
-  }
-  [[nodiscard]] std::uint64_t frames() const override {
-    std::uint64_t frames = 0;
-    for (const auto& stream : streams_) frames += stream->frames();
-    return frames;
-  }
-
- private:
-  std::vector<std::unique_ptr<AravisStream>> streams_;
-};
-
 }  // namespace
 
 MadeReceiver receiveByAravis(const ReceptionSetup& setup) {
-  auto receiver = std::make_unique<AravisReceiver>();
-  if (auto opened = receiver->open(setup); !opened) return std::unexpected(opened.error());
-  return receiver;
+  return openStreams<AravisStream>(setup);
 }
 
 }  // namespace bench

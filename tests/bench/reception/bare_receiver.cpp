@@ -14,7 +14,7 @@
 #include "hal/aravis/profile_push.h"
 #include "rt/memory.h"
 #include "rt/unique_fd.h"
-#include "tests/bench/reception/receiver.h"
+#include "tests/bench/reception/stream_receiver.h"
 
 namespace bench {
 namespace {
@@ -42,19 +42,20 @@ class BareStream {
   }
 
   std::expected<void, std::string> open(const hal::CameraProfile& profile,
-                                        const rt::ThreadConfig& receive, std::uint32_t slots) {
+                                        const ReceptionSetup& setup) {
     const auto fail = [&](const std::string& what) {
       return std::unexpected(profile.address + ": " + what);
     };
     frame_bytes_ = std::size_t{profile.width_px} * profile.height_px;
     packet_bytes_ = profile.packet_size_bytes - kIpUdpBytes;
-    auto memory = rt::LockedArena::create(frame_bytes_ * slots);
+    auto memory = rt::LockedArena::create(frame_bytes_ * setup.slots());
     if (!memory) return fail("no memory");
     memory_ = std::move(*memory);
-    slots_ = slots;
+    slots_ = setup.slots();
     const auto port = openSocket(static_cast<int>(profile.socket_buffer_bytes));
     if (port == 0) return fail(std::strerror(errno));
-    auto thread = rt::Thread::start(receive, [this](const std::stop_token& stop) { run(stop); });
+    auto thread =
+        rt::Thread::start(setup.receive, [this](const std::stop_token& stop) { run(stop); });
     if (!thread) return fail("no thread");
     thread_ = std::move(*thread);
 
@@ -145,33 +146,10 @@ class BareStream {
   rt::Thread thread_;  // last: it uses all of the above
 };
 
-class BareReceiver final : public Receiver {
- public:
-  std::expected<void, std::string> open(const ReceptionSetup& setup) {
-    for (const hal::CameraProfile& profile : setup.cameras) {
-      streams_.push_back(std::make_unique<BareStream>());
-      if (auto opened = streams_.back()->open(profile, setup.receive, setup.slots()); !opened) {
-        return opened;
-      }
-    }
-    return {};
-  }
-  [[nodiscard]] std::uint64_t frames() const override {
-    std::uint64_t frames = 0;
-    for (const auto& stream : streams_) frames += stream->frames();
-    return frames;
-  }
-
- private:
-  std::vector<std::unique_ptr<BareStream>> streams_;
-};
-
 }  // namespace
 
 MadeReceiver receiveByRecvmmsg(const ReceptionSetup& setup) {
-  auto receiver = std::make_unique<BareReceiver>();
-  if (auto opened = receiver->open(setup); !opened) return std::unexpected(opened.error());
-  return receiver;
+  return openStreams<BareStream>(setup);
 }
 
 }  // namespace bench

@@ -8,6 +8,7 @@
 
 #include "tests/bench/reception/receiver.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bench {
 

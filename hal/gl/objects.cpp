@@ -1,8 +1,8 @@
-#include "ui-kms/gl_objects.h"
+#include "hal/gl/objects.h"
 
 #include <array>
 
-namespace ui {
+namespace gl {
 namespace {
 
 std::expected<GLuint, std::string> compile(const char* pass, GLenum stage,
@@ -41,69 +41,47 @@ void deleteVertexArray(GLuint name) {
   glDeleteVertexArrays(1, &name);
 }
 
-GlFramebuffer makeFramebuffer() {
+Framebuffer makeFramebuffer() {
   GLuint name = 0;
   glGenFramebuffers(1, &name);
-  return GlFramebuffer(name);
+  return Framebuffer(name);
 }
 
-GlRenderbuffer makeRenderbuffer() {
+Renderbuffer makeRenderbuffer() {
   GLuint name = 0;
   glGenRenderbuffers(1, &name);
-  return GlRenderbuffer(name);
+  return Renderbuffer(name);
 }
 
-GlBuffer makeBuffer() {
+Buffer makeBuffer() {
   GLuint name = 0;
   glGenBuffers(1, &name);
-  return GlBuffer(name);
+  return Buffer(name);
 }
 
-GlVertexArray makeVertexArray() {
+VertexArray makeVertexArray() {
   GLuint name = 0;
   glGenVertexArrays(1, &name);
-  return GlVertexArray(name);
+  return VertexArray(name);
 }
 
-GlTexture makeTexture(GLenum format, std::uint32_t width_px, std::uint32_t height_px, GLint filter,
-                      GLint wrap) {
+Texture makeTexture(GLenum format, std::uint32_t width_px, std::uint32_t height_px, GLint filter,
+                    GLint wrap, int levels) {
   GLuint name = 0;
   glGenTextures(1, &name);
   glBindTexture(GL_TEXTURE_2D, name);
-  glTexStorage2D(GL_TEXTURE_2D, 1, format, static_cast<GLsizei>(width_px),
+  glTexStorage2D(GL_TEXTURE_2D, levels, format, static_cast<GLsizei>(width_px),
                  static_cast<GLsizei>(height_px));
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER,
+                  filter == GL_NEAREST ? GL_NEAREST : GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
-  return GlTexture(name);
+  return Texture(name);
 }
 
-RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px) {
-  RenderTarget target;
-  target.width_px = width_px;
-  target.height_px = height_px;
-  target.colour = makeTexture(GL_RGBA8, width_px, height_px, GL_LINEAR, GL_CLAMP_TO_EDGE);
-  target.framebuffer = makeFramebuffer();
-  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.colour.get(),
-                         0);
-  return target;
-}
-
-rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba) {
-  if (rgba.size() != std::size_t{4} * target.width_px * target.height_px) {
-    return std::unexpected(rt::Error{rt::Errc::kInvalidConfig, 0, "read: size of the buffer"});
-  }
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px),
-               GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  return {};
-}
-
-std::expected<GlProgram, std::string> makeProgram(const char* pass, const std::string& vertex,
-                                                  const std::string& fragment) {
+std::expected<Program, std::string> makeProgram(const char* pass, const std::string& vertex,
+                                                const std::string& fragment) {
   const auto vertex_shader = compile(pass, GL_VERTEX_SHADER, vertex);
   if (!vertex_shader) return std::unexpected(vertex_shader.error());
   const auto fragment_shader = compile(pass, GL_FRAGMENT_SHADER, fragment);
@@ -111,7 +89,7 @@ std::expected<GlProgram, std::string> makeProgram(const char* pass, const std::s
     glDeleteShader(*vertex_shader);
     return std::unexpected(fragment_shader.error());
   }
-  GlProgram program(glCreateProgram());
+  Program program(glCreateProgram());
   for (const GLuint shader : {*vertex_shader, *fragment_shader}) {
     glAttachShader(program.get(), shader);
     glDeleteShader(shader);  // lives on as long as it is attached
@@ -125,4 +103,8 @@ std::expected<GlProgram, std::string> makeProgram(const char* pass, const std::s
   return std::unexpected(std::string(pass) + " program refused by the GL driver: " + log.data());
 }
 
-}  // namespace ui
+GLint uniform(const Program& program, const char* name) {
+  return glGetUniformLocation(program.get(), name);
+}
+
+}  // namespace gl

@@ -1,4 +1,4 @@
-#include "ui-kms/egl_context.h"
+#include "hal/gl/context.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -7,30 +7,39 @@
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
 
-namespace ui {
+namespace gl {
 namespace {
 
 constexpr const char* kInstall = "install libegl1, libgles2 and libgl1-mesa-dri, or a GPU's driver";
 
+/// Initialized. A handle without a card is the process's only one for its platform, so no context
+/// ever terminates it.
 EGLDisplay openDisplay(gbm_device* gbm) {
+  const auto initialized = [](EGLDisplay display) {
+    return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE
+               ? display
+               : EGL_NO_DISPLAY;
+  };
   const auto get_platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
       eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (get_platform_display == nullptr) return EGL_NO_DISPLAY;
-  if (gbm != nullptr) return get_platform_display(EGL_PLATFORM_GBM_KHR, gbm, nullptr);
-  // The handle is the process's only one for this platform, so no context ever terminates it.
-  return get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  if (gbm != nullptr) return initialized(get_platform_display(EGL_PLATFORM_GBM_KHR, gbm, nullptr));
+  EGLDisplay display = initialized(
+      get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+  // Drivers other than Mesa's draw without a surface on their usual display.
+  return display != EGL_NO_DISPLAY ? display : initialized(eglGetDisplay(EGL_DEFAULT_DISPLAY));
 }
 
 }  // namespace
 
-std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
+std::expected<std::unique_ptr<Context>, std::string> Context::create(
     std::optional<unsigned> software_threads, gbm_device* gbm) {
   if (software_threads) {
     // An operator's own setting of the driver's variable goes first.
     ::setenv("LP_NUM_THREADS", std::to_string(*software_threads).c_str(), /*replace=*/0);
   }
   EGLDisplay display = openDisplay(gbm);
-  if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
+  if (display == EGL_NO_DISPLAY) {
     return std::unexpected(std::string("no EGL without a window system: ") + kInstall);
   }
   const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
@@ -45,12 +54,13 @@ std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
   if (context == EGL_NO_CONTEXT) {
     return std::unexpected(std::string("no OpenGL ES 3 context: ") + kInstall);
   }
-  std::unique_ptr<EglContext> made(new EglContext(display, context, gbm == nullptr));
+  std::unique_ptr<Context> made(new Context(display, context, gbm == nullptr));
   if (!made->bind()) {
     return std::unexpected(std::string("EGL cannot make a context current without a surface: ") +
                            kInstall);
   }
   made->renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  made->version_ = reinterpret_cast<const char*>(glGetString(GL_VERSION));
   made->software_ = made->renderer_.find("llvmpipe") != std::string::npos ||
                     made->renderer_.find("softpipe") != std::string::npos;
   const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
@@ -59,19 +69,19 @@ std::expected<std::unique_ptr<EglContext>, std::string> EglContext::create(
   return made;
 }
 
-EglContext::~EglContext() {
+Context::~Context() {
   release();
   eglDestroyContext(display_, context_);
   if (!surfaceless_) eglTerminate(display_);  // it ends before its card
 }
 
-bool EglContext::bind() {
+bool Context::bind() {
   if (eglGetCurrentContext() == context_) return true;
   eglBindAPI(EGL_OPENGL_ES_API);  // the choice of API is per thread
   return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE;
 }
 
-rt::UniqueFd EglContext::tryFence() const {
+rt::UniqueFd Context::tryFence() const {
   if (!fences_) return {};
   const auto create =
       reinterpret_cast<PFNEGLCREATESYNCKHRPROC>(eglGetProcAddress("eglCreateSyncKHR"));
@@ -88,9 +98,9 @@ rt::UniqueFd EglContext::tryFence() const {
   return fence;
 }
 
-void EglContext::release() {
+void Context::release() {
   if (eglGetCurrentContext() != context_) return;
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
-}  // namespace ui
+}  // namespace gl

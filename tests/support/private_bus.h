@@ -8,6 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace test {
+
 /// A message bus of its own for one test: the real dbus-daemon, without any service.
 class PrivateBus {
  public:
@@ -46,3 +48,5 @@ class PrivateBus {
   pid_t pid_ = -1;
   std::string address_;
 };
+
+}  // namespace test

@@ -9,7 +9,7 @@
 
 struct gbm_device;
 
-namespace ui {
+namespace gl {
 
 /// One OpenGL ES 3 context without a window surface: pictures go into framebuffer objects.
 ///
@@ -17,16 +17,16 @@ namespace ui {
 ///          the policy of the thread that makes the context. It leaves the context current
 ///          there, for making objects; release() ends that. bind() hands it to its caller.
 /// Errors   create(): one line that says what is missing and what to install.
-class EglContext {
+class Context {
  public:
   /// @p software_threads: worker threads of a software renderer (0 draws on the caller);
   /// without a value the driver's default. Only the first context of a process decides.
   /// @p gbm: draws on that graphics card, and outlives the context; none: on any.
-  [[nodiscard]] static std::expected<std::unique_ptr<EglContext>, std::string> create(
+  [[nodiscard]] static std::expected<std::unique_ptr<Context>, std::string> create(
       std::optional<unsigned> software_threads, gbm_device* gbm = nullptr);
-  ~EglContext();
-  EglContext(const EglContext&) = delete;
-  EglContext& operator=(const EglContext&) = delete;
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
 
   /// Makes the context current on the calling thread; cheap where it already is.
   /// False where another thread holds it.
@@ -40,8 +40,9 @@ class EglContext {
 
   /// EGLDisplay.
   [[nodiscard]] void* display() const { return display_; }
-  /// GL_RENDERER.
+  /// GL_RENDERER and GL_VERSION: pictures are the same bit for bit only where both are.
   [[nodiscard]] const std::string& renderer() const { return renderer_; }
+  [[nodiscard]] const std::string& version() const { return version_; }
   /// Whether the CPU draws: then every shader instruction is paid in milliseconds.
   [[nodiscard]] bool software() const { return software_; }
   /// Whether imported memory may be drawn from. Mesa's software renderer on a KMS device offers the
@@ -49,15 +50,16 @@ class EglContext {
   [[nodiscard]] bool readsForeignMemory() const { return surfaceless_ || !software_; }
 
  private:
-  EglContext(void* display, void* context, bool surfaceless)
+  Context(void* display, void* context, bool surfaceless)
       : display_(display), context_(context), surfaceless_(surfaceless) {}
 
   void* display_;  // EGLDisplay and EGLContext: EGL's header stays out of ours
   void* context_;
   bool surfaceless_;
   std::string renderer_;
+  std::string version_;
   bool software_ = false;
   bool fences_ = false;
 };
 
-}  // namespace ui
+}  // namespace gl

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "rt/clock.h"
+#include "rt/unique_fd.h"
+
+namespace rt {
+
+/// SIGINT and SIGTERM as something to ask for, in place of handlers.
+///
+/// Blocks both for the calling thread and all threads it makes afterwards, those of libraries too:
+/// construct it first thing in main().
+/// Threads  main.
+class StopSignals {
+ public:
+  StopSignals();
+
+  /// True as soon as one of them came; stays true.
+  [[nodiscard]] bool requested() { return waitFor(Nanoseconds{0}); }
+
+  /// Waits for one, at most @p timeout.
+  bool waitFor(Nanoseconds timeout);
+
+  /// Readable once one of them came, for who waits for more than that; -1 where there is none.
+  [[nodiscard]] int fd() const { return fd_.get(); }
+
+ private:
+  UniqueFd fd_;
+  bool requested_ = false;
+};
+
+}  // namespace rt
