@@ -42,8 +42,9 @@ inline testing::AssertionResult runDepth(const ScratchFolder& scratch,
 }
 
 /// A second of the emulated sensor as an .oni file.
-inline testing::AssertionResult recordOni(const ScratchFolder& scratch, const std::string& file) {
-  const DepthFeed feed;
+inline testing::AssertionResult recordOni(const ScratchFolder& scratch, const std::string& file,
+                                          const emulator::RgbdFormat& format = DepthFeed::small()) {
+  const DepthFeed feed(format);
   return runDepth(scratch, {"record", "--drivers", KAGAMI_DEPTH_DRIVERS, "--seconds", "1.5", file});
 }
 
