@@ -16,6 +16,7 @@
 #include "hal/emulated/rig/stamp_scene.h"
 #include "hal/emulated/rig/stop_signals.h"
 #include "hal/emulated/studio/progress_bar.h"
+#include "hal/emulated/studio/scene_cache.h"
 #include "hal/emulated/studio/studio_scene.h"
 #include "hal/emulated/studio/truth.h"
 
@@ -120,20 +121,13 @@ void declare(CLI::App& app, Arguments& a) {
 
 using ScenePointer = std::unique_ptr<emulator::Scene>;
 
-std::filesystem::path userCache() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
-    return cache;
-  const char* home = std::getenv("HOME");
-  return std::filesystem::path(home != nullptr && *home != 0 ? home : "/var/tmp") / ".cache";
-}
-
 std::expected<ScenePointer, std::string> openStudio(const Arguments& a) {
   const auto size = parseSize(a.size);
   if (!size) return std::unexpected(size.error());
   emulator::studio::StudioOptions options = a.studio;
   options.cameras = a.cameras;
   options.size = *size;
-  if (options.cache.empty()) options.cache = userCache() / "kagami" / "studio";
+  if (options.cache.empty()) options.cache = emulator::studio::usualCache();
   emulator::studio::ProgressBar bar;
   auto scene = emulator::studio::StudioScene::make(
       options, [&bar](double share, const char* what) { bar.show(share, what); });

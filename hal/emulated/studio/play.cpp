@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -66,14 +67,20 @@ struct Play::State {
         progress(std::move(tell)),
         rig(makeStudioRig(given.cameras, given.size, given.seed)),
         moments(static_cast<std::size_t>(std::lround(given.play_s * kMoments_hz)) / kVariants *
-                kVariants) {}
+                kVariants),
+        order(given.only) {
+    if (!order.empty()) return;
+    order.resize(moments.size());
+    std::iota(order.begin(), order.end(), 0u);
+  }
 
   void loadCache();
+  [[nodiscard]] bool keepsMoments() const { return options.only.empty(); }
   void prepareHall();
   void work(std::size_t worker);
   void drawBackdrops(std::size_t worker);
   void drawMoments(std::size_t worker);
-  void finish(std::uint32_t moment, MomentPatches patches);
+  void finish(std::uint32_t turn, MomentPatches patches);
   void storeBlock(std::uint32_t block);
   void tell(double share, const char* what) {
     const std::lock_guard lock(progress_mutex);
@@ -99,7 +106,8 @@ struct Play::State {
   std::vector<std::unique_ptr<SensorView>> views;
   std::vector<std::vector<float>> depth_m;
   std::vector<MomentPatches> moments;
-  std::vector<std::uint8_t> drawn;  // guarded by mutex
+  std::vector<std::uint32_t> order;  // of drawing: a moment for every turn
+  std::vector<std::uint8_t> drawn;   // by turn; guarded by mutex
   std::atomic<std::uint32_t> next = 0;
   std::atomic<std::uint32_t> ready = 0;
   std::atomic<std::size_t> backdrops_done = 0;
@@ -126,7 +134,7 @@ void Play::State::loadCache() {
     std::memcpy(depth_m[c].data(), &(*bytes)[view_bytes], pixels * sizeof(float));
     tell(0.5 * (c + 1) / cameras, "reading");
   }
-  for (std::uint32_t first = 0; first < moments.size(); first += kBlock) {
+  for (std::uint32_t first = 0; keepsMoments() && first < moments.size(); first += kBlock) {
     const auto bytes = cache.load("moments-" + std::to_string(first / kBlock));
     if (!bytes) break;
     const auto count =
@@ -188,35 +196,36 @@ void Play::State::drawMoments(std::size_t worker) {
       if (!yielding) yieldToEverybody();
       yielding = true;
     }
-    const std::uint32_t moment = next++;
-    if (moment >= moments.size()) return;
+    const std::uint32_t turn = next++;
+    if (turn >= order.size()) return;
+    const std::uint32_t moment = order[turn];
     const double exposure_s = rig.cameras.front().exposure_s;
     people.setMoment(world->at(moment / kMoments_hz, exposure_s));
     MomentPatches patches(views.size());
     for (std::size_t c = 0; c < views.size() && !stop; ++c) {
       patches[c] = views[c]->develop(moment, people.draw(c), people.floorShade());
     }
-    if (!stop) finish(moment, std::move(patches));
+    if (!stop) finish(turn, std::move(patches));
   }
 }
 
-void Play::State::finish(std::uint32_t moment, MomentPatches patches) {
-  moments[moment] = std::move(patches);
+void Play::State::finish(std::uint32_t turn, MomentPatches patches) {
+  moments[order[turn]] = std::move(patches);
   std::uint32_t block_done = UINT32_MAX;
   {
     const std::lock_guard lock(mutex);
-    drawn[moment] = 1;
+    drawn[turn] = 1;
     std::uint32_t count = ready;
-    while (count < moments.size() && drawn[count] != 0) ++count;
+    while (count < order.size() && drawn[count] != 0) ++count;
     ready = count;
-    const std::uint32_t first = moment / kBlock * kBlock;
-    const auto last = std::min<std::size_t>(first + kBlock, moments.size());
+    const std::uint32_t first = turn / kBlock * kBlock;
+    const auto last = std::min<std::size_t>(first + kBlock, order.size());
     if (std::all_of(drawn.begin() + first, drawn.begin() + static_cast<std::ptrdiff_t>(last),
                     [](auto d) { return d != 0; }))
-      block_done = moment / kBlock;
+      block_done = turn / kBlock;
   }
   changed.notify_all();
-  if (block_done != UINT32_MAX) storeBlock(block_done);
+  if (keepsMoments() && block_done != UINT32_MAX) storeBlock(block_done);
 }
 
 void Play::State::storeBlock(std::uint32_t block) {
@@ -258,7 +267,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     s.renderer = (*context)->renderer();
   }
   const std::uint64_t wanted = std::uint64_t{options.cameras} *
-                               (s.moments.size() * kUsualMomentBytes +
+                               (s.order.size() * kUsualMomentBytes +
                                 22 * std::uint64_t{options.size.width} * options.size.height);
   if (const std::uint64_t free = rt::availableMemoryBytes(); free != 0 && wanted > free / 2) {
     return std::unexpected("the studio's " + std::to_string(static_cast<int>(options.play_s)) +
@@ -268,7 +277,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
   }
   s.views.resize(options.cameras);
   s.depth_m.resize(options.cameras);
-  s.drawn.assign(s.moments.size(), 0);
+  s.drawn.assign(s.order.size(), 0);
   if (!options.cache.empty() && options.cache_gib > 0) {
     const std::string key = "pictures " + std::to_string(kPictures) + ", seed " +
                             std::to_string(options.seed) + ", " + std::to_string(options.cameras) +
@@ -281,7 +290,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
   }
   const bool all_views =
       std::ranges::all_of(s.views, [](const auto& view) { return view != nullptr; });
-  if (s.ready < s.moments.size() || !all_views) {
+  if (s.ready < s.order.size() || !all_views) {
     s.prepareHall();
     const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     s.workers.reserve(threads);
@@ -290,10 +299,12 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     s.working = threads;
     for (unsigned i = 0; i < threads; ++i) s.workers.emplace_back([&s, i] { s.work(i); });
 
-    const auto enough = static_cast<std::uint32_t>(std::min<std::size_t>(
-        s.moments.size(), static_cast<std::size_t>(options.first_play_s * kMoments_hz)));
+    const double first_play = s.keepsMoments() ? options.first_play_s * kMoments_hz : 1e9;
+    const auto enough =
+        static_cast<std::uint32_t>(std::min(static_cast<double>(s.order.size()), first_play));
+    const double patience_s = s.keepsMoments() ? options.patience_s : 1e6;
     const auto patience = start + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(options.patience_s));
+                                      std::chrono::duration<double>(patience_s));
     std::unique_lock lock(s.mutex);
     while (s.working > 0 && s.ready < enough &&
            (s.ready < 2 * kVariants || Clock::now() < patience)) {
@@ -301,7 +312,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
       if (s.ready > 0)
         s.tell(0.6 + 0.4 * std::min(1.0, s.ready / static_cast<double>(enough)), "people");
     }
-    if (s.ready < kVariants)
+    if (s.ready < std::min<std::size_t>(kVariants, s.order.size()))
       return std::unexpected(
           "the studio's pictures cannot be drawn: a drawing context was refused");
   }

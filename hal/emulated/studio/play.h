@@ -37,7 +37,7 @@ class Play {
   [[nodiscard]] const StudioRig& rig() const;
   /// Moments of the whole scene.
   [[nodiscard]] std::uint32_t momentCount() const;
-  /// The first so many can be shown.
+  /// The first so many can be shown; with StudioOptions::only, so many of those.
   [[nodiscard]] std::uint32_t readyCount() const;
   [[nodiscard]] const Patch& patch(std::uint32_t moment, std::uint32_t camera) const;
   /// A camera's empty hall; made anew by every call.
