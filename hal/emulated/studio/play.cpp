@@ -22,6 +22,7 @@
 #include "hal/emulated/studio/hall_renderer.h"
 #include "hal/emulated/studio/moment_file.h"
 #include "hal/emulated/studio/people_renderer.h"
+#include "hal/emulated/studio/rgbd_track.h"
 #include "hal/emulated/studio/scene_cache.h"
 #include "hal/emulated/studio/sensor_view.h"
 #include "hal/emulated/studio/world.h"
@@ -31,7 +32,7 @@ namespace emulator::studio {
 namespace {
 
 /// To be raised whenever pictures of the same seed change: it tells old caches from new ones.
-constexpr int kPictures = 1;
+constexpr int kPictures = 2;
 constexpr std::uint32_t kBlock = 10;  ///< moments in one file of the cache
 constexpr unsigned kMostThreads = 8;
 constexpr std::uint64_t kUsualMomentBytes = 160'000;  // per camera
@@ -69,6 +70,9 @@ struct Play::State {
         moments(static_cast<std::size_t>(std::lround(given.play_s * kMoments_hz)) / kVariants *
                 kVariants),
         order(given.only) {
+    if (given.depth_sensor) {
+      rgbd = std::make_unique<RgbdTrack>(given.seed, static_cast<std::uint32_t>(moments.size()));
+    }
     if (!order.empty()) return;
     order.resize(moments.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -82,6 +86,14 @@ struct Play::State {
   void drawMoments(std::size_t worker);
   void finish(std::uint32_t turn, MomentPatches patches);
   void storeBlock(std::uint32_t block);
+  [[nodiscard]] bool hasHall() const {
+    return std::ranges::all_of(views, [](const auto& view) { return view != nullptr; }) &&
+           (!rgbd || rgbd->view() != nullptr);
+  }
+  [[nodiscard]] bool isDrawn(std::uint32_t turn) {
+    const std::lock_guard lock(mutex);
+    return drawn[turn] != 0;
+  }
   void tell(double share, const char* what) {
     const std::lock_guard lock(progress_mutex);
     progress(share, what);
@@ -106,11 +118,14 @@ struct Play::State {
   std::vector<std::unique_ptr<SensorView>> views;
   std::vector<std::vector<float>> depth_m;
   std::vector<MomentPatches> moments;
+  std::unique_ptr<RgbdTrack> rgbd;   // none without a depth sensor
   std::vector<std::uint32_t> order;  // of drawing: a moment for every turn
   std::vector<std::uint8_t> drawn;   // by turn; guarded by mutex
+  std::uint32_t cached = 0;          // of the first so many moments we have the cameras' pictures
   std::atomic<std::uint32_t> next = 0;
   std::atomic<std::uint32_t> ready = 0;
   std::atomic<std::size_t> backdrops_done = 0;
+  std::atomic<bool> hall_drawn = false;  // in every view
   std::atomic<bool> playing = false;
   std::atomic<bool> stop = false;
   unsigned thread_count = 0;
@@ -134,6 +149,7 @@ void Play::State::loadCache() {
     std::memcpy(depth_m[c].data(), &(*bytes)[view_bytes], pixels * sizeof(float));
     tell(0.5 * (c + 1) / cameras, "reading");
   }
+  if (rgbd) rgbd->load(cache);
   for (std::uint32_t first = 0; keepsMoments() && first < moments.size(); first += kBlock) {
     const auto bytes = cache.load("moments-" + std::to_string(first / kBlock));
     if (!bytes) break;
@@ -141,13 +157,15 @@ void Play::State::loadCache() {
         std::min<std::uint32_t>(kBlock, static_cast<std::uint32_t>(moments.size()) - first);
     auto block = readMoments(*bytes, count, cameras, options.size);
     if (!block) break;
+    if (rgbd) rgbd->load(cache, first, count);
     for (std::uint32_t i = 0; i < count; ++i) {
       moments[first + i] = std::move((*block)[i]);
-      drawn[first + i] = 1;
+      drawn[first + i] = !rgbd || rgbd->has(first + i) ? 1 : 0;
     }
-    ready = first + count;
-    tell(0.5 + 0.5 * ready / static_cast<double>(moments.size()), "reading");
+    cached = first + count;
+    tell(0.5 + 0.5 * first / static_cast<double>(moments.size()), "reading");
   }
+  while (ready < cached && drawn[ready] != 0) ++ready;
   next = ready.load();
 }
 
@@ -183,11 +201,18 @@ void Play::State::drawBackdrops(std::size_t worker) {
     tell(0.24 + 0.36 * static_cast<double>(++backdrops_done) / static_cast<double>(views.size()),
          "cameras");
   }
+  const bool ours = worker == views.size() % thread_count;
+  if (!ours || !rgbd || rgbd->view() != nullptr || stop) return;
+  if (!renderer_of_hall) renderer_of_hall.emplace(hall, covers, grain, light.map);
+  const Backdrop backdrop = renderer_of_hall->draw(rgbd->camera());
+  const std::lock_guard lock(cache_mutex);
+  rgbd->setHall(backdrop, cache);
 }
 
 void Play::State::drawMoments(std::size_t worker) {
   PeopleRenderer people(world->cast(), lamps, light.probes, floor_light);
   for (std::size_t c = 0; c < views.size(); ++c) people.addCamera(rig.cameras[c], depth_m[c]);
+  if (rgbd) people.addCamera(rgbd->camera(), rgbd->view()->depth_m());
   bool yielding = false;
   while (!stop) {
     if (playing) {
@@ -198,13 +223,16 @@ void Play::State::drawMoments(std::size_t worker) {
     }
     const std::uint32_t turn = next++;
     if (turn >= order.size()) return;
+    if (isDrawn(turn)) continue;
     const std::uint32_t moment = order[turn];
     const double exposure_s = rig.cameras.front().exposure_s;
     people.setMoment(world->at(moment / kMoments_hz, exposure_s));
-    MomentPatches patches(views.size());
-    for (std::size_t c = 0; c < views.size() && !stop; ++c) {
+    const bool kept = moment < cached;
+    MomentPatches patches = kept ? std::move(moments[moment]) : MomentPatches(views.size());
+    for (std::size_t c = 0; c < views.size() && !kept && !stop; ++c) {
       patches[c] = views[c]->develop(moment, people.draw(c), people.floorShade());
     }
+    if (rgbd && !stop) rgbd->draw(moment, *world, people, views.size());
     if (!stop) finish(turn, std::move(patches));
   }
 }
@@ -233,7 +261,9 @@ void Play::State::storeBlock(std::uint32_t block) {
   const std::size_t count = std::min<std::size_t>(kBlock, moments.size() - first);
   const auto bytes = writeMoments(std::span(moments).subspan(first, count));
   const std::lock_guard lock(cache_mutex);
-  cache.store("moments-" + std::to_string(block), bytes);
+  if (first >= cached) cache.store("moments-" + std::to_string(block), bytes);
+  if (rgbd)
+    rgbd->store(cache, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count));
 }
 
 void Play::State::work(std::size_t worker) {
@@ -241,7 +271,8 @@ void Play::State::work(std::size_t worker) {
   auto context = GlContext::create();
   if (context) drawBackdrops(worker);
   backdrops_drawn->arrive_and_wait();
-  if (context && !stop) drawMoments(worker);
+  hall_drawn = hasHall();
+  if (context && hall_drawn && !stop) drawMoments(worker);
   const std::lock_guard lock(mutex);
   --working;
   changed.notify_all();
@@ -266,7 +297,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     if (!context) return std::unexpected(context.error());
     s.renderer = (*context)->renderer();
   }
-  const std::uint64_t wanted = std::uint64_t{options.cameras} *
+  const std::uint64_t wanted = (std::uint64_t{options.cameras} + (options.depth_sensor ? 1 : 0)) *
                                (s.order.size() * kUsualMomentBytes +
                                 22 * std::uint64_t{options.size.width} * options.size.height);
   if (const std::uint64_t free = rt::availableMemoryBytes(); free != 0 && wanted > free / 2) {
@@ -288,9 +319,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
                          static_cast<std::uint64_t>(options.cache_gib * 1024 * 1024 * 1024));
     s.loadCache();
   }
-  const bool all_views =
-      std::ranges::all_of(s.views, [](const auto& view) { return view != nullptr; });
-  if (s.ready < s.order.size() || !all_views) {
+  if (s.ready < s.order.size() || !s.hasHall()) {
     s.prepareHall();
     const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     s.workers.reserve(threads);
@@ -306,13 +335,13 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     const auto patience = start + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(patience_s));
     std::unique_lock lock(s.mutex);
-    while (s.working > 0 && s.ready < enough &&
-           (s.ready < 2 * kVariants || Clock::now() < patience)) {
+    while (s.working > 0 && (!s.hall_drawn || (s.ready < enough && (s.ready < 2 * kVariants ||
+                                                                    Clock::now() < patience)))) {
       s.changed.wait_for(lock, std::chrono::milliseconds(200));
       if (s.ready > 0)
         s.tell(0.6 + 0.4 * std::min(1.0, s.ready / static_cast<double>(enough)), "people");
     }
-    if (s.ready < std::min<std::size_t>(kVariants, s.order.size()))
+    if (!s.hall_drawn || s.ready < std::min<std::size_t>(kVariants, s.order.size()))
       return std::unexpected(
           "the studio's pictures cannot be drawn: a drawing context was refused");
   }
@@ -339,6 +368,10 @@ const Patch& Play::patch(std::uint32_t moment, std::uint32_t camera) const {
 
 std::vector<std::uint8_t> Play::background(std::uint32_t camera, std::uint32_t variant) const {
   return state_->views[camera]->background(variant);
+}
+
+const RgbdTrack* Play::rgbd() const {
+  return state_->rgbd.get();
 }
 
 void Play::waitFor(std::uint32_t moments) const {

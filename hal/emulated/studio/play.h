@@ -15,6 +15,8 @@
 
 namespace emulator::studio {
 
+class RgbdTrack;
+
 /// One moment as all cameras see it.
 using MomentPatches = std::vector<Patch>;
 
@@ -43,6 +45,8 @@ class Play {
   /// A camera's empty hall; made anew by every call.
   [[nodiscard]] std::vector<std::uint8_t> background(std::uint32_t camera,
                                                      std::uint32_t variant) const;
+  /// What the depth sensor sees; nullptr without one.
+  [[nodiscard]] const RgbdTrack* rgbd() const;
   /// Until so many moments are ready, or drawing has ended. For tests and tools.
   void waitFor(std::uint32_t moments) const;
 

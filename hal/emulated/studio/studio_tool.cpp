@@ -9,10 +9,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "hal/emulated/studio/depth_sensor.h"
 #include "hal/emulated/studio/depth_view.h"
 #include "hal/emulated/studio/play.h"
 #include "hal/emulated/studio/progress_bar.h"
 #include "hal/emulated/studio/scene_cache.h"
+#include "hal/emulated/studio/sensed_picture.h"
 #include "hal/emulated/studio/sensor_view.h"
 #include "hal/emulated/studio/shown.h"
 
@@ -83,6 +85,16 @@ int makeDepth(const Arguments& a) {
   return save(a.out, colourDepth(*depth));
 }
 
+int makeSensed(Arguments& a) {
+  a.studio.depth_sensor = true;
+  a.studio.cameras = 1;
+  const auto picture = static_cast<std::uint32_t>(std::lround(a.second * kDepth_hz));
+  a.second = momentOfDepth(picture) / kMoments_hz;
+  auto play = open(a);
+  if (!play) return fail(play.error());
+  return save(a.out, sensedPicture(**play, picture));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -106,8 +118,12 @@ int main(int argc, char** argv) {
   CLI::App* sheet = app.add_subcommand("sheet", "one moment in all cameras")->fallthrough();
   CLI::App* view = app.add_subcommand("view", "one moment in one camera")->fallthrough();
   CLI::App* depth = app.add_subcommand("depth", "one camera's distances in colours")->fallthrough();
+  CLI::App* sensed =
+      app.add_subcommand("sensor", "what the depth sensor delivers: distances beside colour")
+          ->fallthrough();
   CLI11_PARSE(app, argc, argv);
   if (*sheet) return makeSheet(a);
   if (*view) return makeView(a);
+  if (*sensed) return makeSensed(a);
   return *depth ? makeDepth(a) : 1;
 }
