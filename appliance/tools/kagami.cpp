@@ -18,11 +18,6 @@
 
 namespace appliance {
 
-void fail(const std::string& why) {
-  std::fprintf(stderr, "kagami: %s\n", why.c_str());
-  throw CLI::RuntimeError(1);
-}
-
 namespace {
 
 struct FilmOptions {

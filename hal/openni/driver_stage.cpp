@@ -5,6 +5,11 @@
 #include <system_error>
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "rt/unique_fd.h"
 
 namespace hal::openni {
 namespace {
@@ -13,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "libOpenNI2.so.0";
 constexpr const char* kRecordings = "libOniFile.so.0";
+constexpr const char* kPrefix = "kagami-openni-";
 
 /// Where this machine has OpenNI2.
 std::optional<fs::path> libraryPath() {
@@ -53,6 +59,40 @@ int linkAll(const fs::path& drivers, const fs::path& stage, std::error_code& fai
   return count;
 }
 
+/// Locks the folder for this process and the program that it becomes: whatever ends them, the lock
+/// ends with them. False: it is somebody else's, or was swept away meanwhile.
+bool tryTake(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);  // exec must not close it
+  std::error_code failed;
+  if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fs::exists(folder, failed))
+    return true;
+  if (descriptor >= 0) ::close(descriptor);
+  return false;
+}
+
+/// A folder of our own; empty: none can be made.
+fs::path makeFolder(const fs::path& temporary) {
+  constexpr int kAttempts = 5;
+  for (int i = 0; i < kAttempts; ++i) {
+    std::string pattern = temporary / (std::string(kPrefix) + "XXXXXX");
+    if (::mkdtemp(pattern.data()) == nullptr) return {};
+    if (tryTake(pattern)) return pattern;
+  }
+  return {};
+}
+
+/// Removes what processes left behind that were killed before they could.
+void sweep(const fs::path& temporary) {
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(temporary, failed)) {
+    if (!entry.path().filename().string().starts_with(kPrefix)) continue;
+    const rt::UniqueFd folder(
+        ::open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    if (!folder.valid() || ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0) continue;
+    fs::remove_all(entry.path(), failed);
+  }
+}
+
 }  // namespace
 
 std::expected<DriverStage, std::string> DriverStage::make(const fs::path& drivers) {
@@ -62,14 +102,19 @@ std::expected<DriverStage, std::string> DriverStage::make(const fs::path& driver
     return std::unexpected(who + "there is no such folder: correct depth_sensor.drivers");
   const auto library = libraryPath();
   if (!library) return std::unexpected("OpenNI2 is not installed: install libopenni2-0");
-  std::string pattern = fs::temp_directory_path(failed) / "kagami-openni-XXXXXX";
-  if (failed || ::mkdtemp(pattern.data()) == nullptr)
-    return std::unexpected(who + "no temporary folder can be made: free space in " + pattern);
-  DriverStage stage{fs::path(pattern)};
+  const fs::path temporary = fs::temp_directory_path(failed);
+  if (!failed) sweep(temporary);
+  const fs::path folder = failed ? fs::path() : makeFolder(temporary);
+  if (folder.empty()) {
+    return std::unexpected(who + "no temporary folder can be made: free space in " +
+                           temporary.string());
+  }
+  DriverStage stage(folder);
   const fs::path place = stage.folder() / "OpenNI2" / "Drivers";
   fs::create_directories(place, failed);
   if (!failed) fs::copy_file(*library, stage.folder() / kLibrary, failed);
-  if (failed) return std::unexpected(who + "cannot be staged in " + pattern + ": free some space");
+  if (failed)
+    return std::unexpected(who + "cannot be staged in " + folder.string() + ": free some space");
   const int count = linkAll(drivers, place, failed);
   if (failed) return std::unexpected(who + failed.message() + ": check its permissions");
   if (count == 0) {

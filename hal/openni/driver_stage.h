@@ -11,7 +11,8 @@ namespace hal::openni {
 /// OpenNI2 looks for drivers beside its own library and nowhere else, and only for names that end
 /// in ".so.0". So its library is copied into a folder of its own, with links to the driver of
 /// recordings and to everything in the configured folder. The process that uses it starts with
-/// this folder first in LD_LIBRARY_PATH.
+/// this folder first in LD_LIBRARY_PATH. One that was killed leaves its folder behind; the next
+/// make() removes it.
 ///
 /// Threads  One caller.
 /// Errors   One line for a person: no such folder, no driver in it, no OpenNI2 here.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hal/depth_sensor.h"
+#include "hal/openni/folder_text.h"
 
 namespace hal::openni {
 
@@ -38,10 +39,10 @@ class FolderRecording {
   [[nodiscard]] static std::expected<FolderRecording, std::string> open(
       const std::filesystem::path& folder);
 
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] std::uint32_t width_px() const { return width_px_; }
-  [[nodiscard]] std::uint32_t height_px() const { return height_px_; }
-  [[nodiscard]] const DepthLens& lens() const { return lens_; }
+  [[nodiscard]] const std::string& name() const { return sensor_.name; }
+  [[nodiscard]] std::uint32_t width_px() const { return sensor_.width_px; }
+  [[nodiscard]] std::uint32_t height_px() const { return sensor_.height_px; }
+  [[nodiscard]] const DepthLens& lens() const { return sensor_.lens; }
   [[nodiscard]] bool colour() const { return colour_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }  ///< not empty
 
@@ -53,11 +54,7 @@ class FolderRecording {
   [[nodiscard]] std::expected<void, std::string> findPictures(const std::filesystem::path& folder);
   [[nodiscard]] std::expected<void, std::string> readStamps(const std::filesystem::path& file);
 
-  std::string name_;
-  std::uint32_t width_px_ = 0;
-  std::uint32_t height_px_ = 0;
-  DepthLens lens_;
-  double rate_hz_ = 30;
+  FolderSensorFile sensor_;
   bool colour_ = false;
   std::vector<Entry> entries_;
 };

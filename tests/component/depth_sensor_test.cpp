@@ -160,6 +160,47 @@ TEST(OpenniSensor, LeavesNoProcessBehind) {
   EXPECT_TRUE(workers().empty());
 }
 
+TEST(OpenniSensor, RemovesWhatAKilledDriverLeftBehind) {
+  const TemporaryFolder scratch;
+  std::filesystem::create_directories(scratch.file("tmp"));
+  const auto stages = [&scratch] {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(scratch.file("tmp")))
+      found.push_back(entry.path().filename());
+    return found;
+  };
+  const char* usual = std::getenv("TMPDIR");
+  const std::string before = usual == nullptr ? "" : usual;
+  ::setenv("TMPDIR", scratch.file("tmp").c_str(), 1);
+  {
+    // Without a sensor its drivers stay at hand, until it is plugged in.
+    DepthFeed feed;
+    feed.plug(false);
+    const auto sensor = opened(live());
+    ASSERT_TRUE(sensor);
+    EXPECT_THAT(messageAbout(*sensor, "plug it in"), HasSubstr("no depth sensor found"));
+    const auto first = stages();
+    ASSERT_EQ(first.size(), 1u);
+    const auto killed = workers();
+    ASSERT_EQ(killed.size(), 1u);
+    ::kill(killed.front(), SIGKILL);
+    // The next one sweeps before it makes its own.
+    EXPECT_TRUE(waitUntil(*sensor, [&] { return stages().size() == 1 && stages() != first; }));
+    // While one lives, another lets it be.
+    const auto other = opened(live());
+    ASSERT_TRUE(other);
+    EXPECT_TRUE(waitUntil(*other, [&] { return stages().size() == 2; }));
+    feed.plug(true);
+    EXPECT_TRUE(sensor->waitFrame(20s)) << sensor->status().message;
+    EXPECT_TRUE(other->waitFrame(20s)) << other->status().message;
+  }
+  EXPECT_THAT(stages(), testing::IsEmpty());
+  if (usual == nullptr)
+    ::unsetenv("TMPDIR");
+  else
+    ::setenv("TMPDIR", before.c_str(), 1);
+}
+
 TEST(OpenniSensor, SaysWhatASensorOfAnotherResolutionRuns) {
   const DepthFeed feed(DepthFeed::sized(160, 120));
   const auto sensor = opened(live());
@@ -293,6 +334,32 @@ TEST(Recordings, ArePlayedToTheirLastWholePictureWhereTheirEndIsMissing) {
   ASSERT_TRUE(sensor);
   const Played played = playAll(*sensor);
   EXPECT_GE(played.numbers.size(), 5u) << sensor->status().message;
+}
+
+TEST(Recordings, CopiedInPartArePlayedAsFarAsTheyGo) {
+  const TemporaryFolder scratch;
+  ASSERT_TRUE(test::recordOni(scratch, scratch.file("a.oni")));
+  const auto size = std::filesystem::file_size(scratch.file("a.oni"));
+  std::filesystem::resize_file(scratch.file("a.oni"), size / 2);
+  const auto sensor =
+      opened({.source = scratch.file("a.oni"), .play = Play::kEveryFrame, .repeat = false});
+  ASSERT_TRUE(sensor);
+  const Played played = playAll(*sensor);
+  EXPECT_GE(played.numbers.size(), 5u) << sensor->status().message;
+}
+
+TEST(Recordings, WithoutColourHaveDepthAlone) {
+  const TemporaryFolder scratch;
+  auto format = DepthFeed::small();
+  format.colour = false;
+  ASSERT_TRUE(test::recordOni(scratch, scratch.file("a.oni"), format));
+  const auto sensor = opened({.source = scratch.file("a.oni"), .play = Play::kEveryFrame});
+  ASSERT_TRUE(sensor);
+  const auto frame = sensor->waitFrame(20s);
+  ASSERT_TRUE(frame) << sensor->status().message;
+  EXPECT_EQ(frame->depth_mm.size(), format.pixels());
+  EXPECT_TRUE(frame->colour_rgb.empty());
+  EXPECT_THAT(sensor->status().message, HasSubstr("it has no colour"));
 }
 
 TEST(Recordings, RepeatWhereAsked) {

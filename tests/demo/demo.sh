@@ -22,6 +22,8 @@ said about losses).
                   folder with videos and rig.toml
   --out DIR       where film, stills and reports go (default out/demo)
   --report FILE   also copy report.json of the first scene there
+  --depth         the studio has a depth sensor, too, and kagamid takes its pictures; a line says how
+                  it fared (docs/depth.md). It costs a fifth of a processor
   --interactive   keys of this terminal instead of the script; ends with Ctrl-C
 
 The recording is looked for in $KAGAMI_DATA_DIR, else in ../shared/data beside this folder.
@@ -47,10 +49,12 @@ scene=studio
 out=out/demo
 report=
 interactive=
+depth=
 while [ $# -gt 0 ]; do
   case $1 in
     -h|--help) usage; exit 0 ;;
     --interactive) interactive=yes; shift; continue ;;
+    --depth) depth=yes; shift; continue ;;
     --seconds|--cameras|--size|--fps|--scene|--out|--report) ;;
     *) fail "unknown option '$1'; ./dev demo --help" ;;
   esac
@@ -85,6 +89,7 @@ done
 # ---- processes -----------------------------------------------------------------------------
 emulator=
 daemon=
+bus_daemon=
 stopped=
 
 ended() { ! kill -0 "$1" 2>/dev/null; }
@@ -104,6 +109,7 @@ end_process() {  # PID TENTHS
 cleanup() {
   end_process "$daemon" 100
   end_process "$emulator" 50
+  end_process "$bus_daemon" 20
   keep_run
 }
 trap cleanup EXIT
@@ -185,6 +191,28 @@ phase_at() {  # SECOND SCRIPT
     END { print name }' "$2"
 }
 
+# The studio's depth sensor, if one is asked for, and a bus of our own to ask the box about it.
+sensor_of_run=
+bus=none
+
+plug_sensor_in() {  # RUN-FOLDER
+  sensor_of_run=yes
+  export KAGAMI_DEPTH_RING="$scratch_parent/kagami-demo-depth.$$"
+  command -v dbus-daemon >/dev/null 2>&1 || return 0
+  bus=unix:path=$1/bus
+  dbus-daemon --session --nofork --nopidfile --address="$bus" >/dev/null 2>&1 </dev/null &
+  bus_daemon=$!
+  left=50
+  while [ ! -S "$1/bus" ] && [ "$left" -gt 0 ]; do sleep 0.1; left=$((left - 1)); done
+}
+
+tell_of_sensor() {
+  [ "$bus" != none ] || return 0
+  "$bin/kagami" --bus "$bus" status 2>/dev/null | sed -n 's/^depth  */demo: depth sensor /p'
+  end_process "$bus_daemon" 20
+  bus_daemon=
+}
+
 # Only what differs from the daemon's defaults. The screen ticks at a multiple of the rate.
 write_config() {  # RUN-FOLDER RATE
   addresses=$(awk '/^\[\[camera\]\]/ { printf "%s\"127.0.0.%d\"", n ? ", " : "", n + 1; ++n }' \
@@ -217,7 +245,12 @@ video_hz = 10
 directory = "$1/state"
 trace = "$1/trace.jsonl"
 [control]
-bus = "none"
+bus = "$bus"
+TEXT
+  [ -z "$sensor_of_run" ] || cat <<TEXT
+[depth_sensor]
+backend = "openni"
+drivers = "$root/build/release/depth-drivers"
 TEXT
 }
 
@@ -327,12 +360,17 @@ run_scene() {  # NAME FOLDER RATE EMULATOR-OPTION...
   run=$folder/run
   make_run "$folder"
   panel_script > "$run/panel.txt"
+  if [ -n "$depth" ] && [ "$name" = studio ]; then
+    plug_sensor_in "$run"
+    set -- "$@" --depth-sensor
+  fi
   say "$name: starting the emulated cameras"
   start_emulator "$run" "$@"
   [ -f "$run/rig.toml" ] || cp "$scene_folder/rig.toml" "$run/rig.toml"
   write_config "$run" "$rate" > "$run/kagamid.toml"
   start_daemon "$run"
   watch_run "$run"
+  tell_of_sensor
   stop_programs "$run"
   keep_run
   conclude "$name" "$folder"
@@ -353,6 +391,8 @@ run_studio() {  # FOLDER
   run_scene studio "$1" "$fps" --scene studio --cameras "$cameras" --size "$size" \
     --rig-out "$1/run/rig.toml" --studio-truth "$1/truth"
   emulator_patience=$usual_patience
+  sensor_of_run=
+  bus=none
 }
 
 # How many frame sets a second the same cameras give on a screen of full size: live, not filmed.

@@ -23,8 +23,9 @@ inline testing::AssertionResult runDepth(const TemporaryFolder& scratch,
 }
 
 /// A second of the emulated sensor as an .oni file.
-inline testing::AssertionResult recordOni(const TemporaryFolder& scratch, const std::string& file) {
-  const DepthFeed feed;
+inline testing::AssertionResult recordOni(const TemporaryFolder& scratch, const std::string& file,
+                                          const emulator::RgbdFormat& format = DepthFeed::small()) {
+  const DepthFeed feed(format);
   return runDepth(scratch, {"record", "--drivers", KAGAMI_DEPTH_DRIVERS, "--seconds", "1.5", file});
 }
 

@@ -105,6 +105,30 @@ TEST_F(Folder, CountsWhatIsMissing) {
   EXPECT_THAT(status.message, HasSubstr("000012.png: not a 16-bit grey PNG of 32x24"));
 }
 
+TEST_F(Folder, TakesPicturesOfAnotherSizeForLost) {
+  write();
+  const std::vector<std::uint16_t> smaller(std::size_t{16} * 12, 1000);
+  const std::vector<std::uint8_t> none;
+  const fs::path other = scratch_ / "other";
+  FolderWriter writer(other, ColourFile::kPng);
+  ASSERT_TRUE(writer.write({.depth_mm = smaller,
+                            .colour_rgb = none,
+                            .width_px = 16,
+                            .height_px = 12,
+                            .lens = {14, 14, 7.5, 5.5},
+                            .number = 12},
+                           "x"));
+  fs::copy_file(other / "depth" / "000012.png", folder_ / "depth" / "000012.png",
+                fs::copy_options::overwrite_existing);
+  auto sensor = FolderSensor::open({.folder = folder_, .play = Play::kEveryFrame, .repeat = false});
+  ASSERT_TRUE(sensor) << sensor.error();
+  int frames = 0;
+  while ((*sensor)->waitFrame(1ms)) ++frames;
+  EXPECT_EQ(frames, 3);
+  EXPECT_EQ((*sensor)->status().lost, 2u);
+  EXPECT_THAT((*sensor)->status().message, HasSubstr("000012.png: not a 16-bit grey PNG of 32x24"));
+}
+
 TEST_F(Folder, IsPlayedAsFastAsItWasTaken) {
   write();
   auto sensor = FolderSensor::open({.folder = folder_, .repeat = false});

@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 // The export macro below wants these two; the header that defines them is not installed.
@@ -61,8 +62,11 @@ class Stream final : public oni::driver::StreamBase {
     running_.store(true, std::memory_order_release);
     return ONI_STATUS_OK;
   }
-  void stop() override { running_.store(false, std::memory_order_release); }
-  [[nodiscard]] bool running() const { return running_.load(std::memory_order_acquire); }
+  /// After it nothing is delivered any more, nor is anything on its way.
+  void stop() override {
+    running_.store(false, std::memory_order_seq_cst);
+    delivering_.wait(true, std::memory_order_seq_cst);
+  }
 
   OniStatus getProperty(int id, void* data, int* size) override {
     const bool depth = type_ == ONI_SENSOR_DEPTH;
@@ -127,8 +131,17 @@ class Stream final : public oni::driver::StreamBase {
     }
   }
 
-  /// @p pixels: rows without padding.
+  /// Hands a picture out unless the stream is stopped. @p pixels: rows without padding.
   void deliver(std::span<const std::byte> pixels, std::uint64_t number, std::uint64_t stamp_us) {
+    // One of both sees the other: stop() this, or this stop().
+    delivering_.store(true, std::memory_order_seq_cst);
+    if (running_.load(std::memory_order_seq_cst)) handOut(pixels, number, stamp_us);
+    delivering_.store(false, std::memory_order_release);
+    delivering_.notify_all();
+  }
+
+ private:
+  void handOut(std::span<const std::byte> pixels, std::uint64_t number, std::uint64_t stamp_us) {
     OniFrame* frame = getServices().acquireFrame();
     if (frame == nullptr) return;  // the application holds them all: this picture is lost
     const std::size_t pixel_bytes = type_ == ONI_SENSOR_DEPTH ? 2 : 3;
@@ -156,7 +169,6 @@ class Stream final : public oni::driver::StreamBase {
     getServices().releaseFrame(frame);
   }
 
- private:
   [[nodiscard]] int strideBytes() const {
     return mode_.resolutionX * (type_ == ONI_SENSOR_DEPTH ? 2 : 3);
   }
@@ -165,6 +177,7 @@ class Stream final : public oni::driver::StreamBase {
   RgbdFormat format_;
   OniVideoMode mode_{};
   std::atomic<bool> running_{false};
+  std::atomic<bool> delivering_{false};
   std::atomic<OniBool> mirrored_{FALSE};
 };
 
@@ -206,10 +219,11 @@ class Device final : public oni::driver::DeviceBase {
     const bool known =
         type == ONI_SENSOR_DEPTH || (type == ONI_SENSOR_COLOR && ring_.format().colour);
     if (!known || stream) return nullptr;
-    stream = std::make_unique<Stream>(type, ring_.format());
+    stream = std::make_shared<Stream>(type, ring_.format());
     return stream.get();
   }
   void destroyStream(oni::driver::StreamBase* stream) override {
+    static_cast<Stream*>(stream)->stop();
     const std::scoped_lock lock(mutex_);
     if (stream == depth_.get()) depth_.reset();
     if (stream == colour_.get()) colour_.reset();
@@ -274,12 +288,16 @@ class Device final : public oni::driver::DeviceBase {
 
   void deliver(const DepthRingReader::Stamp& stamp, std::span<const std::uint16_t> depth_mm,
                std::span<const std::uint8_t> rgb) {
-    const std::scoped_lock lock(mutex_);
     if (!ring_.plugged()) return;
+    // OpenNI2 takes locks of its own while it gets a picture, and holds them while it makes and
+    // destroys streams: ours is not held meanwhile.
+    const auto [depth, colour] = [this] {
+      const std::scoped_lock lock(mutex_);
+      return std::pair(depth_, colour_);
+    }();
     const std::uint64_t stamp_us = clock_.stamp_us(stamp.exposure);
-    if (depth_ && depth_->running())
-      depth_->deliver(std::as_bytes(depth_mm), stamp.number, stamp_us);
-    if (colour_ && colour_->running()) colour_->deliver(std::as_bytes(rgb), stamp.number, stamp_us);
+    if (depth) depth->deliver(std::as_bytes(depth_mm), stamp.number, stamp_us);
+    if (colour) colour->deliver(std::as_bytes(rgb), stamp.number, stamp_us);
   }
 
   DepthRingReader ring_;
@@ -288,9 +306,9 @@ class Device final : public oni::driver::DeviceBase {
   std::array<OniVideoMode, 2> modes_{};
   std::array<OniSensorInfo, 2> sensors_{};
   std::atomic<OniImageRegistrationMode> registration_{ONI_IMAGE_REGISTRATION_OFF};
-  std::mutex mutex_;  // the streams' lives
-  std::unique_ptr<Stream> depth_;
-  std::unique_ptr<Stream> colour_;
+  std::mutex mutex_;               // the streams' lives
+  std::shared_ptr<Stream> depth_;  // the last owner may be play(), which delivers no more
+  std::shared_ptr<Stream> colour_;
   std::jthread thread_;  // ends before what it uses
 };
 

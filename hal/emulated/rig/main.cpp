@@ -14,7 +14,9 @@
 #include "hal/emulated/rig/run_record.h"
 #include "hal/emulated/rig/socket.h"
 #include "hal/emulated/rig/stamp_scene.h"
+#include "hal/emulated/studio/depth_feed.h"
 #include "hal/emulated/studio/progress_bar.h"
+#include "hal/emulated/studio/scene_cache.h"
 #include "hal/emulated/studio/studio_scene.h"
 #include "hal/emulated/studio/truth.h"
 #include "rt/stop_signals.h"
@@ -97,6 +99,8 @@ void declare(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--studio-grow", a.studio.grow, "go on drawing the play while it runs")
       ->capture_default_str();
+  app.add_flag("--depth-sensor", a.studio.depth_sensor,
+               "feed the emulated depth sensor with the studio, too");
   app.add_option("--studio-truth", a.truth, "folder for the studio's ground truth");
   app.add_option("--realtime-priority", a.rig.realtime_priority, "SCHED_FIFO priority; 0: none")
       ->check(CLI::Range(0, 99))
@@ -120,20 +124,13 @@ void declare(CLI::App& app, Arguments& a) {
 
 using ScenePointer = std::unique_ptr<emulator::Scene>;
 
-std::filesystem::path userCache() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
-    return cache;
-  const char* home = std::getenv("HOME");
-  return std::filesystem::path(home != nullptr && *home != 0 ? home : "/var/tmp") / ".cache";
-}
-
 std::expected<ScenePointer, std::string> openStudio(const Arguments& a) {
   const auto size = parseSize(a.size);
   if (!size) return std::unexpected(size.error());
   emulator::studio::StudioOptions options = a.studio;
   options.cameras = a.cameras;
   options.size = *size;
-  if (options.cache.empty()) options.cache = userCache() / "kagami" / "studio";
+  if (options.cache.empty()) options.cache = emulator::studio::usualCache();
   emulator::studio::ProgressBar bar;
   auto scene = emulator::studio::StudioScene::make(
       options, [&bar](double share, const char* what) { bar.show(share, what); });
@@ -151,6 +148,14 @@ std::expected<ScenePointer, std::string> openStudio(const Arguments& a) {
   return std::move(*scene);
 }
 
+/// The emulated depth sensor is plugged in while this lives; none is asked for: nullptr.
+std::expected<std::unique_ptr<emulator::studio::DepthFeed>, std::string> feedDepth(
+    const Arguments& a, const emulator::Scene& scene) {
+  const auto* studio = dynamic_cast<const emulator::studio::StudioScene*>(&scene);
+  if (studio == nullptr || !a.studio.depth_sensor) return nullptr;
+  return emulator::studio::DepthFeed::begin(*studio, a.truth);
+}
+
 /// Which trigger showed what can only be told afterwards: while it grows, the play begins anew
 /// earlier.
 std::expected<void, std::string> closeStudio(const Arguments& a, const emulator::Scene& scene) {
@@ -162,6 +167,7 @@ std::expected<void, std::string> closeStudio(const Arguments& a, const emulator:
 std::expected<ScenePointer, std::string> openScene(const Arguments& a) {
   if (a.scene == "studio") return openStudio(a);
   if (!a.truth.empty()) return std::unexpected("--studio-truth is for --scene studio");
+  if (a.studio.depth_sensor) return std::unexpected("--depth-sensor is for --scene studio");
   if (a.scene != "stamp") {
     if (!a.rig_out.empty()) {
       return std::unexpected("--rig-out is for stamp and studio; this scene has its own rig.toml");
@@ -194,6 +200,8 @@ int serve(Arguments& a, const rt::StopSignals& stop) {
   if (!scene) return fail(scene.error());
   auto rig = emulator::Rig::open(**scene, a.rig);
   if (!rig) return fail(rig.error());
+  auto depth = feedDepth(a, **scene);
+  if (!depth) return fail(depth.error());
   const double cpu_at_ready = emulator::processCpuSeconds();
   std::puts("ready");
   std::fflush(stdout);

@@ -242,6 +242,7 @@ void Rig::State::onEdge(const WireEdge& edge) {
   if (edge.rising) {
     if (counters.triggers++ == 0) first_edge = edge.at;
     last_edge = edge.at;
+    context.scene.onTrigger(counters.triggers, edge.at);
   }
   for (Camera& camera : cameras) camera.onLine1(edge.rising, edge.at, counters.triggers);
 }

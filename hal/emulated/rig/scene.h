@@ -5,6 +5,7 @@
 
 #include "hal/emulated/rig/gvsp.h"
 #include "hal/emulated/rig/registers.h"
+#include "rt/clock.h"
 
 namespace emulator {
 
@@ -28,6 +29,9 @@ class Scene {
   /// exposed again.
   [[nodiscard]] virtual gvsp::Picture expose(std::uint32_t camera, std::uint64_t trigger,
                                              std::uint32_t slot) = 0;
+
+  /// A rising edge came, for all cameras; their exposures follow. The same thread.
+  virtual void onTrigger(std::uint64_t /*trigger*/, rt::Timestamp /*edge*/) {}
 };
 
 }  // namespace emulator

@@ -200,6 +200,13 @@ void PeopleRenderer::addCamera(const StudioCamera& camera, const std::vector<flo
 }
 
 void PeopleRenderer::setMoment(const Moment& moment) {
+  movePeople(moment);
+  drawShadows(moment.second);
+  lightBodies(moment.second);
+  shadeFloor(moment.second);
+}
+
+void PeopleRenderer::movePeople(const Moment& moment) {
   shown_.resize(moment.bodies.size());
   const auto put = [](const Mesh& mesh, const PosedMesh& posed) {
     glBindBuffer(GL_ARRAY_BUFFER, mesh.posed.get());
@@ -216,9 +223,6 @@ void PeopleRenderer::setMoment(const Moment& moment) {
     put(surfaces_[body.body], shown.mesh);
     put(shadows_[body.body], shown.shadow);
   }
-  drawShadows(moment.second);
-  lightBodies(moment.second);
-  shadeFloor(moment.second);
 }
 
 void PeopleRenderer::setLamps(const gl::Program& program, double second) const {

@@ -52,6 +52,8 @@ class PeopleRenderer {
   void addCamera(const StudioCamera& camera, const std::vector<float>& depth_m);
 
   void setMoment(const Moment& moment);
+  /// The same people a few milliseconds later, in the light of the last setMoment().
+  void movePeople(const Moment& moment);
   [[nodiscard]] const FloorShade& floorShade() const { return floor_shade_; }
   [[nodiscard]] std::vector<PeoplePicture> draw(std::size_t camera);
   /// Of people and hall, metres along the optical axis, the whole picture. CV_32F.

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -20,6 +21,7 @@
 #include "hal/emulated/studio/hall_renderer.h"
 #include "hal/emulated/studio/moment_file.h"
 #include "hal/emulated/studio/people_renderer.h"
+#include "hal/emulated/studio/rgbd_track.h"
 #include "hal/emulated/studio/scene_cache.h"
 #include "hal/emulated/studio/sensor_view.h"
 #include "hal/emulated/studio/studio_gl.h"
@@ -30,7 +32,7 @@ namespace emulator::studio {
 namespace {
 
 /// To be raised whenever pictures of the same seed change: it tells old caches from new ones.
-constexpr int kPictures = 1;
+constexpr int kPictures = 2;
 constexpr std::uint32_t kBlock = 10;  ///< moments in one file of the cache
 constexpr unsigned kMostThreads = 8;
 constexpr std::uint64_t kUsualMomentBytes = 160'000;  // per camera
@@ -66,15 +68,32 @@ struct Play::State {
         progress(std::move(tell)),
         rig(makeStudioRig(given.cameras, given.size, given.seed)),
         moments(static_cast<std::size_t>(std::lround(given.play_s * kMoments_hz)) / kVariants *
-                kVariants) {}
+                kVariants),
+        order(given.only) {
+    if (given.depth_sensor) {
+      rgbd = std::make_unique<RgbdTrack>(given.seed, static_cast<std::uint32_t>(moments.size()));
+    }
+    if (!order.empty()) return;
+    order.resize(moments.size());
+    std::iota(order.begin(), order.end(), 0u);
+  }
 
   void loadCache();
+  [[nodiscard]] bool keepsMoments() const { return options.only.empty(); }
   void prepareHall();
   void work(std::size_t worker);
   void drawBackdrops(std::size_t worker);
   void drawMoments(std::size_t worker);
-  void finish(std::uint32_t moment, MomentPatches patches);
+  void finish(std::uint32_t turn, MomentPatches patches);
   void storeBlock(std::uint32_t block);
+  [[nodiscard]] bool hasHall() const {
+    return std::ranges::all_of(views, [](const auto& view) { return view != nullptr; }) &&
+           (!rgbd || rgbd->view() != nullptr);
+  }
+  [[nodiscard]] bool isDrawn(std::uint32_t turn) {
+    const std::lock_guard lock(mutex);
+    return drawn[turn] != 0;
+  }
   void tell(double share, const char* what) {
     const std::lock_guard lock(progress_mutex);
     progress(share, what);
@@ -99,10 +118,14 @@ struct Play::State {
   std::vector<std::unique_ptr<SensorView>> views;
   std::vector<std::vector<float>> depth_m;
   std::vector<MomentPatches> moments;
-  std::vector<std::uint8_t> drawn;  // guarded by mutex
+  std::unique_ptr<RgbdTrack> rgbd;   // none without a depth sensor
+  std::vector<std::uint32_t> order;  // of drawing: a moment for every turn
+  std::vector<std::uint8_t> drawn;   // by turn; guarded by mutex
+  std::uint32_t cached = 0;          // of the first so many moments we have the cameras' pictures
   std::atomic<std::uint32_t> next = 0;
   std::atomic<std::uint32_t> ready = 0;
   std::atomic<std::size_t> backdrops_done = 0;
+  std::atomic<bool> hall_drawn = false;  // in every view
   std::atomic<bool> playing = false;
   std::atomic<bool> stop = false;
   unsigned thread_count = 0;
@@ -126,20 +149,23 @@ void Play::State::loadCache() {
     std::memcpy(depth_m[c].data(), &(*bytes)[view_bytes], pixels * sizeof(float));
     tell(0.5 * (c + 1) / cameras, "reading");
   }
-  for (std::uint32_t first = 0; first < moments.size(); first += kBlock) {
+  if (rgbd) rgbd->load(cache);
+  for (std::uint32_t first = 0; keepsMoments() && first < moments.size(); first += kBlock) {
     const auto bytes = cache.load("moments-" + std::to_string(first / kBlock));
     if (!bytes) break;
     const auto count =
         std::min<std::uint32_t>(kBlock, static_cast<std::uint32_t>(moments.size()) - first);
     auto block = readMoments(*bytes, count, cameras, options.size);
     if (!block) break;
+    if (rgbd) rgbd->load(cache, first, count);
     for (std::uint32_t i = 0; i < count; ++i) {
       moments[first + i] = std::move((*block)[i]);
-      drawn[first + i] = 1;
+      drawn[first + i] = !rgbd || rgbd->has(first + i) ? 1 : 0;
     }
-    ready = first + count;
-    tell(0.5 + 0.5 * ready / static_cast<double>(moments.size()), "reading");
+    cached = first + count;
+    tell(0.5 + 0.5 * first / static_cast<double>(moments.size()), "reading");
   }
+  while (ready < cached && drawn[ready] != 0) ++ready;
   next = ready.load();
 }
 
@@ -175,11 +201,18 @@ void Play::State::drawBackdrops(std::size_t worker) {
     tell(0.24 + 0.36 * static_cast<double>(++backdrops_done) / static_cast<double>(views.size()),
          "cameras");
   }
+  const bool ours = worker == views.size() % thread_count;
+  if (!ours || !rgbd || rgbd->view() != nullptr || stop) return;
+  if (!renderer_of_hall) renderer_of_hall.emplace(hall, covers, grain, light.map);
+  const Backdrop backdrop = renderer_of_hall->draw(rgbd->camera());
+  const std::lock_guard lock(cache_mutex);
+  rgbd->setHall(backdrop, cache);
 }
 
 void Play::State::drawMoments(std::size_t worker) {
   PeopleRenderer people(world->cast(), lamps, light.probes, floor_light);
   for (std::size_t c = 0; c < views.size(); ++c) people.addCamera(rig.cameras[c], depth_m[c]);
+  if (rgbd) people.addCamera(rgbd->camera(), rgbd->view()->depth_m());
   bool yielding = false;
   while (!stop) {
     if (playing) {
@@ -188,35 +221,39 @@ void Play::State::drawMoments(std::size_t worker) {
       if (!yielding) yieldToEverybody();
       yielding = true;
     }
-    const std::uint32_t moment = next++;
-    if (moment >= moments.size()) return;
+    const std::uint32_t turn = next++;
+    if (turn >= order.size()) return;
+    if (isDrawn(turn)) continue;
+    const std::uint32_t moment = order[turn];
     const double exposure_s = rig.cameras.front().exposure_s;
     people.setMoment(world->at(moment / kMoments_hz, exposure_s));
-    MomentPatches patches(views.size());
-    for (std::size_t c = 0; c < views.size() && !stop; ++c) {
+    const bool kept = moment < cached;
+    MomentPatches patches = kept ? std::move(moments[moment]) : MomentPatches(views.size());
+    for (std::size_t c = 0; c < views.size() && !kept && !stop; ++c) {
       patches[c] = views[c]->develop(moment, people.draw(c), people.floorShade());
     }
-    if (!stop) finish(moment, std::move(patches));
+    if (rgbd && !stop) rgbd->draw(moment, *world, people, views.size());
+    if (!stop) finish(turn, std::move(patches));
   }
 }
 
-void Play::State::finish(std::uint32_t moment, MomentPatches patches) {
-  moments[moment] = std::move(patches);
+void Play::State::finish(std::uint32_t turn, MomentPatches patches) {
+  moments[order[turn]] = std::move(patches);
   std::uint32_t block_done = UINT32_MAX;
   {
     const std::lock_guard lock(mutex);
-    drawn[moment] = 1;
+    drawn[turn] = 1;
     std::uint32_t count = ready;
-    while (count < moments.size() && drawn[count] != 0) ++count;
+    while (count < order.size() && drawn[count] != 0) ++count;
     ready = count;
-    const std::uint32_t first = moment / kBlock * kBlock;
-    const auto last = std::min<std::size_t>(first + kBlock, moments.size());
+    const std::uint32_t first = turn / kBlock * kBlock;
+    const auto last = std::min<std::size_t>(first + kBlock, order.size());
     if (std::all_of(drawn.begin() + first, drawn.begin() + static_cast<std::ptrdiff_t>(last),
                     [](auto d) { return d != 0; }))
-      block_done = moment / kBlock;
+      block_done = turn / kBlock;
   }
   changed.notify_all();
-  if (block_done != UINT32_MAX) storeBlock(block_done);
+  if (keepsMoments() && block_done != UINT32_MAX) storeBlock(block_done);
 }
 
 void Play::State::storeBlock(std::uint32_t block) {
@@ -224,7 +261,9 @@ void Play::State::storeBlock(std::uint32_t block) {
   const std::size_t count = std::min<std::size_t>(kBlock, moments.size() - first);
   const auto bytes = writeMoments(std::span(moments).subspan(first, count));
   const std::lock_guard lock(cache_mutex);
-  cache.store("moments-" + std::to_string(block), bytes);
+  if (first >= cached) cache.store("moments-" + std::to_string(block), bytes);
+  if (rgbd)
+    rgbd->store(cache, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count));
 }
 
 void Play::State::work(std::size_t worker) {
@@ -232,7 +271,8 @@ void Play::State::work(std::size_t worker) {
   auto context = openContext();
   if (context) drawBackdrops(worker);
   backdrops_drawn->arrive_and_wait();
-  if (context && !stop) drawMoments(worker);
+  hall_drawn = hasHall();
+  if (context && hall_drawn && !stop) drawMoments(worker);
   const std::lock_guard lock(mutex);
   --working;
   changed.notify_all();
@@ -255,8 +295,8 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     if (!context) return std::unexpected(context.error());
     s.renderer = (*context)->renderer() + ", " + (*context)->version();
   }
-  const std::uint64_t wanted = std::uint64_t{options.cameras} *
-                               (s.moments.size() * kUsualMomentBytes +
+  const std::uint64_t wanted = (std::uint64_t{options.cameras} + (options.depth_sensor ? 1 : 0)) *
+                               (s.order.size() * kUsualMomentBytes +
                                 22 * std::uint64_t{options.size.width} * options.size.height);
   if (const std::uint64_t free = rt::availableMemoryBytes(); free != 0 && wanted > free / 2) {
     return std::unexpected("the studio's " + std::to_string(static_cast<int>(options.play_s)) +
@@ -266,7 +306,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
   }
   s.views.resize(options.cameras);
   s.depth_m.resize(options.cameras);
-  s.drawn.assign(s.moments.size(), 0);
+  s.drawn.assign(s.order.size(), 0);
   if (!options.cache.empty() && options.cache_gib > 0) {
     const std::string key = "pictures " + std::to_string(kPictures) + ", seed " +
                             std::to_string(options.seed) + ", " + std::to_string(options.cameras) +
@@ -277,9 +317,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
                          static_cast<std::uint64_t>(options.cache_gib * 1024 * 1024 * 1024));
     s.loadCache();
   }
-  const bool all_views =
-      std::ranges::all_of(s.views, [](const auto& view) { return view != nullptr; });
-  if (s.ready < s.moments.size() || !all_views) {
+  if (s.ready < s.order.size() || !s.hasHall()) {
     s.prepareHall();
     const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     s.workers.reserve(threads);
@@ -288,18 +326,20 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     s.working = threads;
     for (unsigned i = 0; i < threads; ++i) s.workers.emplace_back([&s, i] { s.work(i); });
 
-    const auto enough = static_cast<std::uint32_t>(std::min<std::size_t>(
-        s.moments.size(), static_cast<std::size_t>(options.first_play_s * kMoments_hz)));
+    const double first_play = s.keepsMoments() ? options.first_play_s * kMoments_hz : 1e9;
+    const auto enough =
+        static_cast<std::uint32_t>(std::min(static_cast<double>(s.order.size()), first_play));
+    const double patience_s = s.keepsMoments() ? options.patience_s : 1e6;
     const auto patience = start + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(options.patience_s));
+                                      std::chrono::duration<double>(patience_s));
     std::unique_lock lock(s.mutex);
-    while (s.working > 0 && s.ready < enough &&
-           (s.ready < 2 * kVariants || Clock::now() < patience)) {
+    while (s.working > 0 && (!s.hall_drawn || (s.ready < enough && (s.ready < 2 * kVariants ||
+                                                                    Clock::now() < patience)))) {
       s.changed.wait_for(lock, std::chrono::milliseconds(200));
       if (s.ready > 0)
         s.tell(0.6 + 0.4 * std::min(1.0, s.ready / static_cast<double>(enough)), "people");
     }
-    if (s.ready < kVariants)
+    if (!s.hall_drawn || s.ready < std::min<std::size_t>(kVariants, s.order.size()))
       return std::unexpected(
           "the studio's pictures cannot be drawn: a drawing context was refused");
   }
@@ -326,6 +366,10 @@ const Patch& Play::patch(std::uint32_t moment, std::uint32_t camera) const {
 
 std::vector<std::uint8_t> Play::background(std::uint32_t camera, std::uint32_t variant) const {
   return state_->views[camera]->background(variant);
+}
+
+const RgbdTrack* Play::rgbd() const {
+  return state_->rgbd.get();
 }
 
 void Play::waitFor(std::uint32_t moments) const {

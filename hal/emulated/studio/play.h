@@ -15,6 +15,8 @@
 
 namespace emulator::studio {
 
+class RgbdTrack;
+
 /// One moment as all cameras see it.
 using MomentPatches = std::vector<Patch>;
 
@@ -37,12 +39,14 @@ class Play {
   [[nodiscard]] const StudioRig& rig() const;
   /// Moments of the whole scene.
   [[nodiscard]] std::uint32_t momentCount() const;
-  /// The first so many can be shown.
+  /// The first so many can be shown; with StudioOptions::only, so many of those.
   [[nodiscard]] std::uint32_t readyCount() const;
   [[nodiscard]] const Patch& patch(std::uint32_t moment, std::uint32_t camera) const;
   /// A camera's empty hall; made anew by every call.
   [[nodiscard]] std::vector<std::uint8_t> background(std::uint32_t camera,
                                                      std::uint32_t variant) const;
+  /// What the depth sensor sees; nullptr without one.
+  [[nodiscard]] const RgbdTrack* rgbd() const;
   /// Until so many moments are ready, or drawing has ended. For tests and tools.
   void waitFor(std::uint32_t moments) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -31,6 +32,17 @@ std::uint64_t sizeOf(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::filesystem::path usualCache() {
+  fs::path cache;
+  if (const char* set = std::getenv("XDG_CACHE_HOME"); set != nullptr && *set != 0) {
+    cache = set;
+  } else {
+    const char* home = std::getenv("HOME");
+    cache = fs::path(home != nullptr && *home != 0 ? home : "/var/tmp") / ".cache";
+  }
+  return cache / "kagami" / "studio";
+}
 
 std::uint64_t digest(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0xcbf2'9ce4'8422'2325;

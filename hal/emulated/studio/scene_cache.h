@@ -36,6 +36,9 @@ class SceneCache {
   std::uint64_t limit_bytes_ = 0;
 };
 
+/// kagami/studio in the user's cache.
+[[nodiscard]] std::filesystem::path usualCache();
+
 /// Of a scene's key and of what files hold: FNV-1a over words of eight bytes.
 [[nodiscard]] std::uint64_t digest(std::span<const std::byte> bytes);
 

@@ -78,6 +78,18 @@ std::uint32_t StudioScene::momentOf(std::uint64_t trigger) {
   return static_cast<std::uint32_t>(trigger - round_.first_trigger);
 }
 
+void StudioScene::onTrigger(std::uint64_t trigger, rt::Timestamp edge) {
+  // Rounds begin with exposures; until the next one has, its first moments count on from here.
+  const std::uint64_t passed = trigger - std::min(trigger, round_.first_trigger);
+  const bool next = trigger == last_trigger_ + 1 && last_trigger_ != 0;
+  playing_.store({.moment = static_cast<std::uint32_t>(passed % round_.moments),
+                  .moments = round_.moments,
+                  .edge = edge,
+                  .period = next ? edge - last_edge_ : rt::Nanoseconds{0}});
+  last_edge_ = edge;
+  last_trigger_ = trigger;
+}
+
 gvsp::Picture StudioScene::expose(std::uint32_t camera, std::uint64_t trigger, std::uint32_t slot) {
   Slot& s = slots_[camera][slot];
   const std::uint32_t moment = momentOf(trigger);

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "hal/emulated/rig/scene.h"
+#include "hal/emulated/studio/depth_pace.h"
 #include "hal/emulated/studio/play.h"
 #include "rt/memory.h"
+#include "rt/shared_value.h"
 
 namespace emulator::studio {
 
@@ -29,6 +31,9 @@ class StudioScene final : public Scene {
   [[nodiscard]] std::string cameraName(std::uint32_t camera) const override;
   [[nodiscard]] gvsp::Picture expose(std::uint32_t camera, std::uint64_t trigger,
                                      std::uint32_t slot) override;
+  void onTrigger(std::uint64_t trigger, rt::Timestamp edge) override;
+  /// What the last trigger shows. Any thread.
+  [[nodiscard]] PlayingMoment playing() const { return playing_.load(); }
 
   /// Since when the scene plays once more, and for how many moments.
   struct Round {
@@ -54,6 +59,9 @@ class StudioScene final : public Scene {
   std::vector<std::array<Slot, kFrameHistory>> slots_;
   std::vector<Round> rounds_;
   Round round_;
+  rt::Timestamp last_edge_;
+  std::uint64_t last_trigger_ = 0;
+  rt::SharedValue<PlayingMoment> playing_;
 };
 
 }  // namespace emulator::studio

@@ -9,9 +9,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "hal/emulated/studio/depth_sensor.h"
 #include "hal/emulated/studio/depth_view.h"
 #include "hal/emulated/studio/play.h"
 #include "hal/emulated/studio/progress_bar.h"
+#include "hal/emulated/studio/scene_cache.h"
+#include "hal/emulated/studio/sensed_picture.h"
 #include "hal/emulated/studio/sensor_view.h"
 #include "hal/emulated/studio/shown.h"
 
@@ -39,10 +42,14 @@ int save(const std::string& path, const cv::Mat& bgr) {
   return 0;
 }
 
+std::uint32_t momentOf(const Arguments& a) {
+  return static_cast<std::uint32_t>(std::lround(a.second * kMoments_hz));
+}
+
 std::expected<std::unique_ptr<Play>, std::string> open(Arguments& a) {
   a.studio.play_s = std::max(a.studio.play_s, a.second + 0.1);
-  a.studio.first_play_s = a.second + 1 / kMoments_hz;
-  a.studio.patience_s = 1e6;
+  a.studio.only = {momentOf(a)};
+  if (a.studio.cache.empty()) a.studio.cache = usualCache();
   ProgressBar bar;
   return Play::begin(a.studio, [&bar](double share, const char* what) { bar.show(share, what); });
 }
@@ -50,11 +57,10 @@ std::expected<std::unique_ptr<Play>, std::string> open(Arguments& a) {
 int makeSheet(Arguments& a) {
   auto play = open(a);
   if (!play) return fail(play.error());
-  const auto moment = static_cast<std::uint32_t>(std::lround(a.second * kMoments_hz));
   cv::Mat sheet;
   const int rows = (static_cast<int>(a.studio.cameras) + a.columns - 1) / a.columns;
   for (std::uint32_t camera = 0; camera < a.studio.cameras; ++camera) {
-    const cv::Mat shown = shownPicture(**play, camera, moment);
+    const cv::Mat shown = shownPicture(**play, camera, momentOf(a));
     const cv::Size tile(a.tile_px, a.tile_px * shown.rows / shown.cols);
     if (sheet.empty())
       sheet = cv::Mat(rows * tile.height, a.columns * tile.width, CV_8UC3, cv::Scalar::all(0));
@@ -70,14 +76,23 @@ int makeView(Arguments& a) {
   auto play = open(a);
   if (!play) return fail(play.error());
   if (a.camera < 1 || a.camera > a.studio.cameras) return fail("--camera counts from 1");
-  return save(a.out, shownPicture(**play, a.camera - 1,
-                                  static_cast<std::uint32_t>(std::lround(a.second * kMoments_hz))));
+  return save(a.out, shownPicture(**play, a.camera - 1, momentOf(a)));
 }
 
 int makeDepth(const Arguments& a) {
   const auto depth = renderDepth(a.studio, a.camera - 1, a.second);
   if (!depth) return fail(depth.error());
   return save(a.out, colourDepth(*depth));
+}
+
+int makeSensed(Arguments& a) {
+  a.studio.depth_sensor = true;
+  a.studio.cameras = 1;
+  const auto picture = static_cast<std::uint32_t>(std::lround(a.second * kDepth_hz));
+  a.second = momentOfDepth(picture) / kMoments_hz;
+  auto play = open(a);
+  if (!play) return fail(play.error());
+  return save(a.out, sensedPicture(**play, picture));
 }
 
 }  // namespace
@@ -92,7 +107,8 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 600.0));
   app.add_option("--seconds", a.studio.play_s, "length of the play")->capture_default_str();
-  app.add_option("--cache", a.studio.cache, "folder that keeps what was drawn; default: none");
+  app.add_option("--cache", a.studio.cache,
+                 "folder that keeps the empty hall; default: kagami/studio in the user's cache");
   app.add_option("--camera", a.camera, "from 1")->capture_default_str();
   app.add_option("--out", a.out, "PNG or JPEG file")->required();
   app.add_option("--columns", a.columns)->capture_default_str()->check(CLI::Range(1, 50));
@@ -102,8 +118,12 @@ int main(int argc, char** argv) {
   CLI::App* sheet = app.add_subcommand("sheet", "one moment in all cameras")->fallthrough();
   CLI::App* view = app.add_subcommand("view", "one moment in one camera")->fallthrough();
   CLI::App* depth = app.add_subcommand("depth", "one camera's distances in colours")->fallthrough();
+  CLI::App* sensed =
+      app.add_subcommand("sensor", "what the depth sensor delivers: distances beside colour")
+          ->fallthrough();
   CLI11_PARSE(app, argc, argv);
   if (*sheet) return makeSheet(a);
   if (*view) return makeView(a);
+  if (*sensed) return makeSensed(a);
   return *depth ? makeDepth(a) : 1;
 }

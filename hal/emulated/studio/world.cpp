@@ -31,6 +31,7 @@ World::World(std::uint64_t seed, Clothes clothes) {
     shapes[i] = drawShape(random.next());
     shapes[i].cell_scale = i == 0 ? kAthleteCells : kOthersCells;
   }
+  athlete_shape_ = shapes[0];
   cast_.resize(shapes.size());
   if (clothes == Clothes::kAll) {
     std::vector<std::jthread> tailors;

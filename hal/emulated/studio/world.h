@@ -22,6 +22,7 @@ class World {
   /// All who move while a shutter is open from @p second on.
   [[nodiscard]] Moment at(double second, double exposure_s) const;
   [[nodiscard]] const Performance& athlete() const { return people_.front().performance; }
+  [[nodiscard]] const BodyShape& athleteShape() const { return athlete_shape_; }
   [[nodiscard]] std::size_t peopleCount() const { return people_.size(); }
   [[nodiscard]] const Performance& person(std::size_t i) const { return people_[i].performance; }
 
@@ -32,6 +33,7 @@ class World {
   };
   std::vector<CastMember> cast_;
   std::vector<Person> people_;
+  BodyShape athlete_shape_;
   std::uint32_t ball_ = 0;
 };
 

@@ -1,0 +1,207 @@
+#include "hal/emulated/studio/rgbd_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include <Eigen/Geometry>
+
+namespace emulator::studio {
+namespace {
+
+constexpr float kExposure = 1.14f;       // light 1 is a little more than full, as for the cameras
+constexpr float kFaintest = 0.988f;      // shade fainter than this is none
+constexpr float kNearer_m = 0.002f;      // than the hall: a person
+constexpr std::uint32_t kShortGap = 12;  // a gap of unchanged pixels that costs less than a run
+
+std::uint8_t shown(float light) {
+  static const auto table = [] {
+    std::array<std::uint8_t, 4096> values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double v = static_cast<double>(i) / (values.size() - 1);
+      const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+      values[i] = static_cast<std::uint8_t>(std::lround(255 * s));
+    }
+    return values;
+  }();
+  const float index = std::clamp(light * kExposure, 0.0f, 1.0f) * (table.size() - 1);
+  return table[static_cast<std::size_t>(index + 0.5f)];
+}
+
+std::uint16_t stepsOf(float depth_m) {
+  const float steps = depth_m / RgbdPatch::kStep_m + 0.5f;
+  return steps < 65536 ? static_cast<std::uint16_t>(steps) : std::uint16_t{0};
+}
+
+/// What the floor keeps of its light at a place among the map's cells.
+float shareAt(const FloorShade& shade, const cv::Point2f& at) {
+  const int x = static_cast<int>(at.x);
+  const int y = static_cast<int>(at.y);
+  const float u = at.x - static_cast<float>(x);
+  const float v = at.y - static_cast<float>(y);
+  const auto* above = shade.share.ptr<float>(y) + x;
+  const auto* below = shade.share.ptr<float>(y + 1) + x;
+  return (1 - v) * ((1 - u) * above[0] + u * above[1]) + v * ((1 - u) * below[0] + u * below[1]);
+}
+
+}  // namespace
+
+void RgbdPatch::putInto(const DepthRingWriter::Canvas& canvas) const {
+  const std::uint16_t* depth = depth_steps.data();
+  const std::uint8_t* colour = colour_rgb.data();
+  for (const Patch::Run& run : runs) {
+    float* to = &canvas.depth_m[run.start];
+    for (std::uint32_t i = 0; i < run.length; ++i) to[i] = static_cast<float>(depth[i]) * kStep_m;
+    std::memcpy(&canvas.colour_rgb[3 * std::size_t{run.start}], colour,
+                3 * std::size_t{run.length});
+    depth += run.length;
+    colour += 3 * std::size_t{run.length};
+  }
+}
+
+void RgbdPatch::save(std::vector<std::byte>& to) const {
+  const auto put = [&to](const void* from, std::size_t size) {
+    const auto* bytes = static_cast<const std::byte*>(from);
+    to.insert(to.end(), bytes, bytes + size);
+  };
+  const std::uint32_t counts[2] = {static_cast<std::uint32_t>(runs.size()),
+                                   static_cast<std::uint32_t>(depth_steps.size())};
+  put(counts, sizeof counts);
+  put(runs.data(), runs.size() * sizeof(Patch::Run));
+  put(depth_steps.data(), depth_steps.size() * sizeof(std::uint16_t));
+  put(colour_rgb.data(), colour_rgb.size());
+}
+
+std::optional<RgbdPatch> RgbdPatch::load(std::span<const std::byte>& bytes, std::size_t pixels) {
+  const auto take = [&bytes](void* to, std::size_t wanted) {
+    if (bytes.size() < wanted) return false;
+    if (wanted > 0) std::memcpy(to, bytes.data(), wanted);
+    bytes = bytes.subspan(wanted);
+    return true;
+  };
+  RgbdPatch patch;
+  std::uint32_t counts[2];
+  if (!take(counts, sizeof counts) || counts[0] > pixels || counts[1] > pixels) return std::nullopt;
+  patch.runs.resize(counts[0]);
+  patch.depth_steps.resize(counts[1]);
+  patch.colour_rgb.resize(3 * std::size_t{counts[1]});
+  if (!take(patch.runs.data(), patch.runs.size() * sizeof(Patch::Run)) ||
+      !take(patch.depth_steps.data(), patch.depth_steps.size() * sizeof(std::uint16_t)) ||
+      !take(patch.colour_rgb.data(), patch.colour_rgb.size()))
+    return std::nullopt;
+  std::uint64_t sum = 0;
+  for (const Patch::Run& run : patch.runs) {
+    if (std::uint64_t{run.start} + run.length > pixels) return std::nullopt;
+    sum += run.length;
+  }
+  if (sum != counts[1]) return std::nullopt;
+  return patch;
+}
+
+RgbdView::RgbdView(const StudioCamera& camera, const Backdrop& backdrop)
+    : width_(static_cast<int>(backdrop.width)),
+      height_(static_cast<int>(backdrop.height)),
+      rgb_(backdrop.rgb),
+      depth_m_(backdrop.depth_m) {
+  findFloor(camera);
+  fillEmpty();
+}
+
+std::size_t RgbdView::savedBytes(SizePx size) {
+  return std::size_t{size.width} * size.height * 4 * sizeof(float);
+}
+
+RgbdView::RgbdView(const StudioCamera& camera, std::span<const std::byte> saved)
+    : width_(static_cast<int>(camera.model.image_size.width)),
+      height_(static_cast<int>(camera.model.image_size.height)),
+      rgb_(saved.size() / (4 * sizeof(float)) * 3),
+      depth_m_(rgb_.size() / 3) {
+  std::memcpy(rgb_.data(), saved.data(), rgb_.size() * sizeof(float));
+  std::memcpy(depth_m_.data(), &saved[rgb_.size() * sizeof(float)],
+              depth_m_.size() * sizeof(float));
+  findFloor(camera);
+  fillEmpty();
+}
+
+void RgbdView::save(std::vector<std::byte>& to) const {
+  for (const auto& plane : {std::span(rgb_), std::span(depth_m_)}) {
+    const auto bytes = std::as_bytes(plane);
+    to.insert(to.end(), bytes.begin(), bytes.end());
+  }
+}
+
+void RgbdView::findFloor(const StudioCamera& camera) {
+  const Eigen::Matrix3d to_rig = camera.rotation().transpose();
+  const Eigen::Vector3d eye = camera.centre();
+  const CameraModel& m = camera.model;
+  floor_.assign(depth_m_.size(), cv::Point2f(-1, -1));
+  std::size_t i = 0;
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x, ++i) {
+      const Eigen::Vector3d ray((x - m.centre_px[0]) / m.focal_px[0],
+                                (y - m.centre_px[1]) / m.focal_px[1], 1);
+      const Eigen::Vector3d point = eye + to_rig * ray * depth_m_[i];
+      const double column = (point.x() - FloorShade::kLowX_m) / FloorShade::kStep_m - 0.5;
+      const double row = (point.y() - FloorShade::kLowY_m) / FloorShade::kStep_m - 0.5;
+      if (std::abs(point.z()) < 0.02 && column >= 0 && row >= 0 &&
+          column < FloorShade::kColumns - 1 && row < FloorShade::kRows - 1)
+        floor_[i] = cv::Point2f(static_cast<float>(column), static_cast<float>(row));
+    }
+  }
+}
+
+void RgbdView::fillEmpty() {
+  colour_empty_.resize(rgb_.size());
+  std::ranges::transform(rgb_, colour_empty_.begin(), shown);
+}
+
+void RgbdView::drawEmpty(const DepthRingWriter::Canvas& canvas) const {
+  std::ranges::copy(depth_m_, canvas.depth_m.begin());
+  std::ranges::copy(colour_empty_, canvas.colour_rgb.begin());
+}
+
+RgbdPatch RgbdView::develop(const std::vector<PeoplePicture>& people, const FloorShade& shade,
+                            const cv::Mat& depth_m) const {
+  const cv::Size size(width_, height_);
+  cv::Mat covers(size, CV_8UC4, cv::Scalar::all(0));
+  for (const PeoplePicture& picture : people) picture.roots.copyTo(covers(picture.area));
+  RgbdPatch patch;
+  std::uint32_t run_end = 0;
+  bool open = false;
+  const auto put = [&](std::size_t i, const cv::Vec4b& light, float kept) {
+    patch.depth_steps.push_back(
+        stepsOf(depth_m.at<float>(static_cast<int>(i) / width_, static_cast<int>(i) % width_)));
+    const float cover = static_cast<float>(light[3]) / 255;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float root = static_cast<float>(light[static_cast<int>(c)]) / 255;
+      const float person = cover > 0 ? root * root / cover : 0;
+      patch.colour_rgb.push_back(shown(rgb_[3 * i + c] * kept * (1 - cover) + person));
+    }
+  };
+  for (int y = 0; y < height_; ++y) {
+    open = false;
+    for (int x = 0; x < width_; ++x) {
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                     static_cast<std::size_t>(x);
+      const cv::Vec4b& light = covers.at<cv::Vec4b>(y, x);
+      const float kept = floor_[i].x >= 0 ? shareAt(shade, floor_[i]) : 1;
+      const bool nearer = depth_m.at<float>(y, x) < depth_m_[i] - kNearer_m;
+      if (light[3] == 0 && kept >= kFaintest && !nearer) continue;
+      const auto at = static_cast<std::uint32_t>(i);
+      if (open && at - run_end < kShortGap) {
+        for (std::uint32_t gap = run_end; gap < at; ++gap) put(gap, cv::Vec4b(0, 0, 0, 0), 1);
+      } else {
+        if (open) patch.runs.back().length = run_end - patch.runs.back().start;
+        patch.runs.push_back({.start = at, .length = 0});
+        open = true;
+      }
+      put(i, light, kept);
+      run_end = at + 1;
+    }
+    if (open) patch.runs.back().length = run_end - patch.runs.back().start;
+  }
+  return patch;
+}
+
+}  // namespace emulator::studio
