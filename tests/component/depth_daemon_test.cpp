@@ -1,10 +1,14 @@
 // The daemon with a depth sensor: it runs beside cameras and screen, and never in their way.
 
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "tests/support/commanded_box.h"
 #include "tests/support/depth_feed.h"
@@ -12,6 +16,7 @@
 namespace {
 
 using nlohmann::json;
+using namespace std::chrono_literals;
 
 class DepthDaemon : public test::CommandedBox {
  protected:
@@ -44,6 +49,33 @@ TEST_F(DepthDaemon, RunsWithoutASensorThatCannotBeOpened) {
 TEST_F(DepthDaemon, NamesTheBackendsThereAre) {
   startDaemon({"depth_sensor.backend=lidar"});
   EXPECT_TRUE(says(R"(is not one of "none", "openni", "folder")"));
+}
+
+TEST(DepthTools, MeasureALatencyByALampInThePicture) {
+  const test::TemporaryFolder folder;
+  const std::string ring = "/dev/shm/kagami-depth-lamp-test-" + std::to_string(::getpid());
+  ::setenv("KAGAMI_DEPTH_RING", ring.c_str(), 1);
+  const std::string lamp = folder / "lamp.txt";
+  test::ChildProcess feeder({KAGAMI_DEPTH_FEEDER, "--lamp-log", lamp}, folder / "feeder.log");
+  test::ChildProcess latency({KAGAMI, "depth", "latency", "--config", KAGAMID_CONFIG, "--seconds",
+                              "12", "--lamp-log", lamp, "--set", "depth_sensor.backend=openni",
+                              "--set", std::string("depth_sensor.drivers=") + KAGAMI_DEPTH_DRIVERS},
+                             folder / "latency.log");
+  ASSERT_EQ(latency.wait(60s), 0) << latency.output() << feeder.output();
+  double latency_ms = 0;
+  const std::string said = latency.output();
+  ASSERT_EQ(std::sscanf(said.c_str(), "latency_ms = %lf", &latency_ms), 1) << said;
+  // 40 ms, and what a busy machine adds to even its most punctual arrival.
+  EXPECT_GE(latency_ms, 38);
+  EXPECT_LE(latency_ms, 60);
+}
+
+TEST(DepthTools, TheEmulatorRefusesADepthSensorWhereItsSceneHasNone) {
+  const test::TemporaryFolder folder;
+  test::ChildProcess emulator({KAGAMI_EMULATOR, "--scene", "stamp", "--depth-sensor"},
+                              folder / "emulator.log");
+  EXPECT_EQ(emulator.wait(30s), 1);
+  EXPECT_EQ(emulator.output(), "kagami-emulator: --depth-sensor is for --scene studio\n");
 }
 
 }  // namespace

@@ -162,16 +162,16 @@ TEST(OpenniSensor, LeavesNoProcessBehind) {
 
 TEST(OpenniSensor, RemovesWhatAKilledDriverLeftBehind) {
   const TemporaryFolder scratch;
-  std::filesystem::create_directories(scratch.file("tmp"));
+  std::filesystem::create_directories(scratch / "tmp");
   const auto stages = [&scratch] {
     std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(scratch.file("tmp")))
+    for (const auto& entry : std::filesystem::directory_iterator(scratch / "tmp"))
       found.push_back(entry.path().filename());
     return found;
   };
   const char* usual = std::getenv("TMPDIR");
   const std::string before = usual == nullptr ? "" : usual;
-  ::setenv("TMPDIR", scratch.file("tmp").c_str(), 1);
+  ::setenv("TMPDIR", (scratch / "tmp").c_str(), 1);
   {
     // Without a sensor its drivers stay at hand, until it is plugged in.
     DepthFeed feed;
@@ -246,7 +246,7 @@ TEST(OpenniSensor, SaysWhatIsWrongWithTheDriverFolder) {
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "there is no such folder"), HasSubstr("/nowhere/Drivers"));
   const TemporaryFolder empty;
-  settings.drivers = empty.file("");
+  settings.drivers = empty.path();
   sensor = opened(settings);
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "no OpenNI2 driver"), HasSubstr("OpenNI2/Drivers"));
@@ -255,9 +255,9 @@ TEST(OpenniSensor, SaysWhatIsWrongWithTheDriverFolder) {
 
 TEST(OpenniSensor, LooksOnWhereADriverIsNone) {
   const TemporaryFolder drivers;
-  std::ofstream(drivers.file("libbroken.so")) << "not a library";
+  std::ofstream(drivers / "libbroken.so") << "not a library";
   SensorSettings settings = live();
-  settings.drivers = drivers.file("");
+  settings.drivers = drivers.path();
   const auto sensor = opened(settings);
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "no depth sensor found"), HasSubstr("depth_sensor.drivers"));
@@ -338,11 +338,11 @@ TEST(Recordings, ArePlayedToTheirLastWholePictureWhereTheirEndIsMissing) {
 
 TEST(Recordings, CopiedInPartArePlayedAsFarAsTheyGo) {
   const TemporaryFolder scratch;
-  ASSERT_TRUE(test::recordOni(scratch, scratch.file("a.oni")));
-  const auto size = std::filesystem::file_size(scratch.file("a.oni"));
-  std::filesystem::resize_file(scratch.file("a.oni"), size / 2);
+  ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni"));
+  const auto size = std::filesystem::file_size(scratch / "a.oni");
+  std::filesystem::resize_file(scratch / "a.oni", size / 2);
   const auto sensor =
-      opened({.source = scratch.file("a.oni"), .play = Play::kEveryFrame, .repeat = false});
+      opened({.source = scratch / "a.oni", .play = Play::kEveryFrame, .repeat = false});
   ASSERT_TRUE(sensor);
   const Played played = playAll(*sensor);
   EXPECT_GE(played.numbers.size(), 5u) << sensor->status().message;
@@ -352,8 +352,8 @@ TEST(Recordings, WithoutColourHaveDepthAlone) {
   const TemporaryFolder scratch;
   auto format = DepthFeed::small();
   format.colour = false;
-  ASSERT_TRUE(test::recordOni(scratch, scratch.file("a.oni"), format));
-  const auto sensor = opened({.source = scratch.file("a.oni"), .play = Play::kEveryFrame});
+  ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni", format));
+  const auto sensor = opened({.source = scratch / "a.oni", .play = Play::kEveryFrame});
   ASSERT_TRUE(sensor);
   const auto frame = sensor->waitFrame(20s);
   ASSERT_TRUE(frame) << sensor->status().message;
