@@ -1,13 +1,17 @@
 /// The studio as other people's software sees it. Minutes: its label is studio.
 #include "hal/emulated/studio/studio_scene.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
-#include <opencv2/calib3d.hpp>
+#include <nlohmann/json.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <unistd.h>
@@ -15,7 +19,10 @@
 #include "hal/emulated/studio/depth_view.h"
 #include "hal/emulated/studio/sensor_view.h"
 #include "hal/emulated/studio/shown.h"
+#include "hal/emulated/studio/truth.h"
 #include "hal/emulated/studio/world.h"
+#include "tests/studio/projected_joints.h"
+#include "tests/support/child_process.h"
 
 namespace {
 
@@ -104,13 +111,15 @@ TEST(Studio, ShowsEachTriggerItsMomentWhicheverSlotItGoesTo) {
 
 TEST(Studio, StartsColdWithinAMinute) {
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor = std::clock();
   StudioOptions options;
   options.grow = false;
   const auto play = Play::begin(options, quiet);
   ASSERT_TRUE(play) << play.error();
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("cold start: %.1f s to %.2f s of play of %u cameras\n", seconds,
+  std::printf("cold start: %.1f s (%.1f s of processor) to %.2f s of play of %u cameras\n", seconds,
+              static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC,
               (*play)->readyCount() / kMoments_hz, options.cameras);
   EXPECT_GE((*play)->readyCount(), 2 * kVariants);
 
@@ -128,29 +137,66 @@ TEST(Studio, StartsColdWithinAMinute) {
   EXPECT_GE(fewest, 800u);
 }
 
+/// Joints of the truth's files, projected by OpenCV with the cameras of the truth's files, meet the
+/// lens that the pictures are drawn with.
+TEST(Studio, TellsEveryJointWhereOpenCvSeesIt) {
+  const test::TemporaryFolder folder;
+  const StudioOptions options;
+  ASSERT_TRUE(writeTruth(folder.path(), options));
+  std::ifstream truth_file(folder / "truth.json");
+  const auto truth = nlohmann::json::parse(truth_file);
+  std::vector<Eigen::Vector3d> joints;
+  std::ifstream moments(folder / "moments.jsonl");
+  for (std::string line; std::getline(moments, line);) {
+    const auto moment = nlohmann::json::parse(line);
+    for (const auto& person : moment["people"]) {
+      for (const auto& joint : person) joints.emplace_back(joint[0], joint[1], joint[2]);
+    }
+  }
+  EXPECT_EQ(joints.size(), std::lround(options.play_s * kMoments_hz) * 3 * 17);
+  const auto rig = makeStudioRig(options.cameras, options.size, options.seed);
+  ASSERT_EQ(truth["cameras"].size(), rig.cameras.size());
+  double most_px = 0;
+  std::size_t checked = 0;
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const StudioCamera& drawn = rig.cameras[c];
+    StudioCamera told;
+    const auto& written = truth["cameras"][c];
+    told.model.focal_px = written["focal_px"];
+    told.model.centre_px = written["centre_px"];
+    told.model.distortion = written["distortion"];
+    told.model.rotation = written["rotation_cam_rig"];
+    told.model.translation_m = written["translation_cam_rig_m"];
+    std::vector<Eigen::Vector3d> in_front;
+    std::ranges::copy_if(joints, std::back_inserter(in_front), [&](const Eigen::Vector3d& joint) {
+      return drawn.rotation().row(2).dot(joint - drawn.centre()) > 0.5;
+    });
+    const auto seen = projectJoints(in_front, told);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const Eigen::Vector2d ours = drawn.project(in_front[i]);
+      if (ours.x() < 0 || ours.y() < 0 || ours.x() >= 1280 || ours.y() >= 1024) continue;
+      ++checked;
+      most_px = std::max(most_px, std::hypot(seen[i].x - ours.x(), seen[i].y - ours.y()));
+    }
+  }
+  std::printf("%zu joints in pictures, off by %.5f px at most\n", checked, most_px);
+  EXPECT_GT(checked, 500'000u);
+  EXPECT_LT(most_px, 0.01);
+}
+
 TEST(Studio, DrawsTheAthleteWhereItsJointsAre) {
   StudioOptions options;
   const auto rig = makeStudioRig(options.cameras, options.size, options.seed);
   const World world(options.seed, World::Clothes::kNone);
   int joints = 0;
   int inside = 0;
-  for (const std::uint32_t camera : {0u, 9u, 19u}) {
+  for (const std::uint32_t camera : {0u, 4u, 9u, 14u, 19u}) {
     const StudioCamera& c = rig.cameras[camera];
     const double second = 1 + 0.5 * camera;
     const auto depth = renderDepth(options, camera, second);
     ASSERT_TRUE(depth) << depth.error();
     const PoseAt pose = world.athlete().at(second + c.exposure_s / 2);
-    std::vector<cv::Point3d> points;
-    for (const Eigen::Vector3d& joint : pose.joints)
-      points.emplace_back(joint.x(), joint.y(), joint.z());
-    cv::Mat turn;
-    cv::Rodrigues(cv::Mat(3, 3, CV_64F, const_cast<double*>(c.model.rotation[0].data())), turn);
-    const cv::Matx33d lens(c.model.focal_px[0], 0, c.model.centre_px[0], 0, c.model.focal_px[1],
-                           c.model.centre_px[1], 0, 0, 1);
-    std::vector<cv::Point2d> seen;
-    cv::projectPoints(
-        points, turn, cv::Mat(3, 1, CV_64F, const_cast<double*>(c.model.translation_m.data())),
-        lens, cv::Mat(1, 5, CV_64F, const_cast<double*>(c.model.distortion.data())), seen);
+    const std::vector<cv::Point2d> seen = projectJoints(pose.joints, c);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const Eigen::Vector3d& joint = pose.joints[i];
       const double away = (c.rotation().row(2) * (joint - c.centre()))(0);

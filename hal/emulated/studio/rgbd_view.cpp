@@ -26,7 +26,7 @@ std::uint8_t shown(float light) {
     return values;
   }();
   const float index = std::clamp(light * kExposure, 0.0f, 1.0f) * (table.size() - 1);
-  return table[static_cast<std::size_t>(index + 0.5f)];
+  return table[static_cast<std::size_t>(std::lround(index))];
 }
 
 std::uint16_t stepsOf(float depth_m) {
