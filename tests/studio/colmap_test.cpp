@@ -23,6 +23,7 @@
 #include "hal/emulated/studio/sensor_view.h"
 #include "hal/emulated/studio/shown.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 

@@ -23,6 +23,7 @@
 #include "hal/emulated/studio/world.h"
 #include "tests/studio/projected_joints.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
