@@ -6,7 +6,8 @@ RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px) {
   RenderTarget target;
   target.width_px = width_px;
   target.height_px = height_px;
-  target.colour = gl::makeTexture(GL_RGBA8, width_px, height_px, GL_LINEAR, GL_CLAMP_TO_EDGE);
+  target.colour = gl::makeTexture(GL_RGBA8, static_cast<GLsizei>(width_px),
+                                  static_cast<GLsizei>(height_px), GL_LINEAR, GL_CLAMP_TO_EDGE);
   target.framebuffer = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.colour.get(),

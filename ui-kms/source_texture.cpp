@@ -36,7 +36,8 @@ SourceTexture::Storage& SourceTexture::storageFor(std::uint32_t width_px, std::u
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_MIRRORED_REPEAT);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_MIRRORED_REPEAT);
   if (site_ == DemosaicSite::kGpu) {
-    storage.mosaic = gl::makeTexture(GL_R8, width_px, height_px, GL_NEAREST, GL_CLAMP_TO_EDGE);
+    storage.mosaic = gl::makeTexture(GL_R8, static_cast<GLsizei>(width_px),
+                                     static_cast<GLsizei>(height_px), GL_NEAREST, GL_CLAMP_TO_EDGE);
   } else {
     storage.rgba.resize(std::size_t{4} * width_px * height_px);
   }

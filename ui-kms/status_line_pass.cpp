@@ -77,8 +77,8 @@ std::expected<StatusLinePass, std::string> StatusLinePass::create(const std::str
 }
 
 void StatusLinePass::makeBuffers() {
-  texture_ =
-      gl::makeTexture(GL_R8, atlas_.widthPx(), atlas_.heightPx(), GL_LINEAR, GL_CLAMP_TO_EDGE);
+  texture_ = gl::makeTexture(GL_R8, static_cast<GLsizei>(atlas_.widthPx()),
+                             static_cast<GLsizei>(atlas_.heightPx()), GL_LINEAR, GL_CLAMP_TO_EDGE);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(atlas_.widthPx()),
                   static_cast<GLsizei>(atlas_.heightPx()), GL_RED, GL_UNSIGNED_BYTE,

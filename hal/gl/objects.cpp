@@ -65,13 +65,12 @@ VertexArray makeVertexArray() {
   return VertexArray(name);
 }
 
-Texture makeTexture(GLenum format, std::uint32_t width_px, std::uint32_t height_px, GLint filter,
-                    GLint wrap, int levels) {
+Texture makeTexture(GLenum format, GLsizei width_px, GLsizei height_px, GLint filter, GLint wrap,
+                    int levels) {
   GLuint name = 0;
   glGenTextures(1, &name);
   glBindTexture(GL_TEXTURE_2D, name);
-  glTexStorage2D(GL_TEXTURE_2D, levels, format, static_cast<GLsizei>(width_px),
-                 static_cast<GLsizei>(height_px));
+  glTexStorage2D(GL_TEXTURE_2D, levels, format, width_px, height_px);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER,
                   filter == GL_NEAREST ? GL_NEAREST : GL_LINEAR);

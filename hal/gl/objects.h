@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <expected>
 #include <string>
 #include <utility>
@@ -51,8 +50,8 @@ using VertexArray = Handle<deleteVertexArray>;
 
 /// Immutable storage of @p levels mipmap levels; @p format is a sized internal format. The texture
 /// stays bound. A filter between levels serves for making smaller; larger it is GL_LINEAR.
-[[nodiscard]] Texture makeTexture(GLenum format, std::uint32_t width_px, std::uint32_t height_px,
-                                  GLint filter, GLint wrap, int levels = 1);
+[[nodiscard]] Texture makeTexture(GLenum format, GLsizei width_px, GLsizei height_px, GLint filter,
+                                  GLint wrap, int levels = 1);
 
 /// Compiles and links; the error names the pass and carries the driver's message.
 [[nodiscard]] std::expected<Program, std::string> makeProgram(const char* pass,

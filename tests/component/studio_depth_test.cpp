@@ -243,11 +243,10 @@ TEST_F(StudioDepth, SeesColourWhereItSeesDepth) {
         const int right = pair.depth_mm[i + 1];
         if (left == 0 || right == 0 || left > 5000 || right - left < 1000) continue;
         ++edges;
-        for (int shift = -kFarthest_px; shift <= kFarthest_px; ++shift) {
-          const std::size_t k = 3 * static_cast<std::size_t>(static_cast<int>(i) + shift);
+        for (std::size_t shift = 0; shift < contrast.size(); ++shift) {
+          const std::size_t k = 3 * (i + shift - std::size_t{kFarthest_px});
           for (std::size_t c = 0; c < 3; ++c)
-            contrast[static_cast<std::size_t>(shift + kFarthest_px)] +=
-                std::abs(int{pair.rgb[k + 3 + c]} - int{pair.rgb[k + c]});
+            contrast[shift] += std::abs(int{pair.rgb[k + 3 + c]} - int{pair.rgb[k + c]});
         }
       }
     }

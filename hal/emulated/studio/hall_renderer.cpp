@@ -219,7 +219,8 @@ HallRenderer::HallRenderer(const std::vector<Surface>& surfaces, const CoverPict
 
   for (std::size_t i = 0; i < kCoverCount; ++i) covers_[i] = upload(covers[i], GL_SRGB8_ALPHA8);
   grain_ = upload(floor_grain, GL_SRGB8_ALPHA8);
-  light_ = gl::makeTexture(GL_RGBA32F, light.width, light.height, GL_LINEAR, GL_CLAMP_TO_EDGE);
+  light_ = gl::makeTexture(GL_RGBA32F, static_cast<GLsizei>(light.width),
+                           static_cast<GLsizei>(light.height), GL_LINEAR, GL_CLAMP_TO_EDGE);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(light.width),
                   static_cast<GLsizei>(light.height), GL_RGBA, GL_FLOAT, light.texels.data());
   surface_program_ = makeProgram("hall", kSurfaceVertex, kSurfaceFragment);
