@@ -30,7 +30,7 @@ class MoveNet {
   [[nodiscard]] std::array<SeenJoint, 17> find(const cv::Mat& bgr, const cv::Rect2f& square);
 
  private:
-  explicit MoveNet(cv::dnn::Net net) : net_(std::move(net)) {}
+  explicit MoveNet(const cv::dnn::Net& net) : net_(net) {}
 
   cv::dnn::Net net_;
 };
