@@ -7,13 +7,14 @@
 
 #include <Eigen/Geometry>
 
+#include "hal/emulated/studio/bytes.h"
+
 namespace emulator::studio {
 namespace {
 
-constexpr float kExposure = 1.14f;       // light 1 is a little more than full, as for the cameras
-constexpr float kFaintest = 0.988f;      // shade fainter than this is none
-constexpr float kNearer_m = 0.002f;      // than the hall: a person
-constexpr std::uint32_t kShortGap = 12;  // a gap of unchanged pixels that costs less than a run
+constexpr float kExposure = 1.14f;   // light 1 is a little more than full, as for the cameras
+constexpr float kFaintest = 0.988f;  // shade fainter than this is none
+constexpr float kNearer_m = 0.002f;  // than the hall: a person
 
 std::uint8_t shown(float light) {
   static const auto table = [] {
@@ -50,7 +51,7 @@ float shareAt(const FloorShade& shade, const cv::Point2f& at) {
 void RgbdPatch::putInto(const DepthRingWriter::Canvas& canvas) const {
   const std::uint16_t* depth = depth_steps.data();
   const std::uint8_t* colour = colour_rgb.data();
-  for (const Patch::Run& run : runs) {
+  for (const Run& run : runs) {
     float* to = &canvas.depth_m[run.start];
     for (std::uint32_t i = 0; i < run.length; ++i) to[i] = static_cast<float>(depth[i]) * kStep_m;
     std::memcpy(&canvas.colour_rgb[3 * std::size_t{run.start}], colour,
@@ -61,41 +62,24 @@ void RgbdPatch::putInto(const DepthRingWriter::Canvas& canvas) const {
 }
 
 void RgbdPatch::save(std::vector<std::byte>& to) const {
-  const auto put = [&to](const void* from, std::size_t size) {
-    const auto* bytes = static_cast<const std::byte*>(from);
-    to.insert(to.end(), bytes, bytes + size);
-  };
-  const std::uint32_t counts[2] = {static_cast<std::uint32_t>(runs.size()),
-                                   static_cast<std::uint32_t>(depth_steps.size())};
-  put(counts, sizeof counts);
-  put(runs.data(), runs.size() * sizeof(Patch::Run));
-  put(depth_steps.data(), depth_steps.size() * sizeof(std::uint16_t));
-  put(colour_rgb.data(), colour_rgb.size());
+  const std::array counts = {static_cast<std::uint32_t>(runs.size()),
+                             static_cast<std::uint32_t>(depth_steps.size())};
+  putBytes(to, counts);
+  putBytes(to, runs);
+  putBytes(to, depth_steps);
+  putBytes(to, colour_rgb);
 }
 
 std::optional<RgbdPatch> RgbdPatch::load(std::span<const std::byte>& bytes, std::size_t pixels) {
-  const auto take = [&bytes](void* to, std::size_t wanted) {
-    if (bytes.size() < wanted) return false;
-    if (wanted > 0) std::memcpy(to, bytes.data(), wanted);
-    bytes = bytes.subspan(wanted);
-    return true;
-  };
   RgbdPatch patch;
-  std::uint32_t counts[2];
-  if (!take(counts, sizeof counts) || counts[0] > pixels || counts[1] > pixels) return std::nullopt;
+  std::array<std::uint32_t, 2> counts{};
+  if (!takeBytes(bytes, counts) || counts[0] > pixels || counts[1] > pixels) return std::nullopt;
   patch.runs.resize(counts[0]);
   patch.depth_steps.resize(counts[1]);
   patch.colour_rgb.resize(3 * std::size_t{counts[1]});
-  if (!take(patch.runs.data(), patch.runs.size() * sizeof(Patch::Run)) ||
-      !take(patch.depth_steps.data(), patch.depth_steps.size() * sizeof(std::uint16_t)) ||
-      !take(patch.colour_rgb.data(), patch.colour_rgb.size()))
+  if (!takeBytes(bytes, patch.runs) || !takeBytes(bytes, patch.depth_steps) ||
+      !takeBytes(bytes, patch.colour_rgb) || !fit(patch.runs, pixels, counts[1]))
     return std::nullopt;
-  std::uint64_t sum = 0;
-  for (const Patch::Run& run : patch.runs) {
-    if (std::uint64_t{run.start} + run.length > pixels) return std::nullopt;
-    sum += run.length;
-  }
-  if (sum != counts[1]) return std::nullopt;
   return patch;
 }
 
@@ -125,10 +109,8 @@ RgbdView::RgbdView(const StudioCamera& camera, std::span<const std::byte> saved)
 }
 
 void RgbdView::save(std::vector<std::byte>& to) const {
-  for (const auto& plane : {std::span(rgb_), std::span(depth_m_)}) {
-    const auto bytes = std::as_bytes(plane);
-    to.insert(to.end(), bytes.begin(), bytes.end());
-  }
+  putBytes(to, rgb_);
+  putBytes(to, depth_m_);
 }
 
 void RgbdView::findFloor(const StudioCamera& camera) {
@@ -167,8 +149,7 @@ RgbdPatch RgbdView::develop(const std::vector<PeoplePicture>& people, const Floo
   cv::Mat covers(size, CV_8UC4, cv::Scalar::all(0));
   for (const PeoplePicture& picture : people) picture.roots.copyTo(covers(picture.area));
   RgbdPatch patch;
-  std::uint32_t run_end = 0;
-  bool open = false;
+  RunMaker runs(patch.runs);
   const auto put = [&](std::size_t i, const cv::Vec4b& light, float kept) {
     patch.depth_steps.push_back(
         stepsOf(depth_m.at<float>(static_cast<int>(i) / width_, static_cast<int>(i) % width_)));
@@ -180,7 +161,7 @@ RgbdPatch RgbdView::develop(const std::vector<PeoplePicture>& people, const Floo
     }
   };
   for (int y = 0; y < height_; ++y) {
-    open = false;
+    runs.beginRow();
     for (int x = 0; x < width_; ++x) {
       const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                      static_cast<std::size_t>(x);
@@ -188,18 +169,10 @@ RgbdPatch RgbdView::develop(const std::vector<PeoplePicture>& people, const Floo
       const float kept = floor_[i].x >= 0 ? shareAt(shade, floor_[i]) : 1;
       const bool nearer = depth_m.at<float>(y, x) < depth_m_[i] - kNearer_m;
       if (light[3] == 0 && kept >= kFaintest && !nearer) continue;
-      const auto at = static_cast<std::uint32_t>(i);
-      if (open && at - run_end < kShortGap) {
-        for (std::uint32_t gap = run_end; gap < at; ++gap) put(gap, cv::Vec4b(0, 0, 0, 0), 1);
-      } else {
-        if (open) patch.runs.back().length = run_end - patch.runs.back().start;
-        patch.runs.push_back({.start = at, .length = 0});
-        open = true;
-      }
+      for (std::uint32_t gap = runs.add(static_cast<std::uint32_t>(i)); gap > 0; --gap)
+        put(i - gap, cv::Vec4b(0, 0, 0, 0), 1);
       put(i, light, kept);
-      run_end = at + 1;
     }
-    if (open) patch.runs.back().length = run_end - patch.runs.back().start;
   }
   return patch;
 }

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
+#include "hal/emulated/studio/bytes.h"
 #include "hal/emulated/studio/random.h"
 
 namespace emulator::studio {
@@ -20,8 +21,6 @@ constexpr float kRippleScale = 400;
 constexpr float kFloorScale = 128;
 /// Shade fainter than this drowns in the noise.
 constexpr float kFaintest = 0.988f;
-/// A gap of unchanged pixels shorter than this costs less than another run.
-constexpr std::uint32_t kShortGap = 12;
 
 /// Normal values to draw from: mean 0, deviation 1.
 const std::array<float, 65536>& normals() {
@@ -124,8 +123,7 @@ SensorView::SensorView(const StudioCamera& camera, std::uint32_t number,
 }
 
 void SensorView::save(std::vector<std::byte>& to) const {
-  const auto bytes = std::as_bytes(std::span(pixels_));
-  to.insert(to.end(), bytes.begin(), bytes.end());
+  putBytes(to, pixels_);
 }
 
 float SensorView::signalOf(const Pixel& pixel, std::uint32_t variant) const {
@@ -180,6 +178,7 @@ Patch SensorView::develop(std::uint64_t moment, const std::vector<PeoplePicture>
   cv::Rect all = shaded;
   for (const PeoplePicture& picture : people) all |= picture.area;
   Patch patch;
+  RunMaker runs(patch.runs);
   const auto share = [&](const Pixel& pixel) {
     const int column = static_cast<int>(static_cast<float>(pixel.floor_x) / kFloorScale);
     const int row = static_cast<int>(static_cast<float>(pixel.floor_y) / kFloorScale);
@@ -205,8 +204,7 @@ Patch SensorView::develop(std::uint64_t moment, const std::vector<PeoplePicture>
     }
     const bool shaded_row = y >= shaded.y && y < shaded.br().y;
     const std::size_t row_start = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-    std::uint32_t run_end = 0;  // just behind the last changed pixel of the open run
-    bool open = false;
+    runs.beginRow();
     for (int x = all.x; x < all.br().x; ++x) {
       const Pixel& pixel = pixels_[row_start + static_cast<std::size_t>(x)];
       const cv::Vec4b* light = nullptr;
@@ -228,19 +226,11 @@ Patch SensorView::develop(std::uint64_t moment, const std::vector<PeoplePicture>
         signal = signal * (1 - cover) + root * root / cover * lens * kFullScale_dn;
       }
       const auto at = static_cast<std::uint32_t>(row_start) + static_cast<std::uint32_t>(x);
-      if (open && at - run_end < kShortGap) {
-        // The pixels of the gap are the empty hall's, with noise of this moment.
-        for (std::uint32_t g = run_end; g < at; ++g)
-          patch.pixels.push_back(digitise(signalOf(pixels_[g], variant), noise.next()));
-      } else {
-        if (open) patch.runs.back().length = run_end - patch.runs.back().start;
-        patch.runs.push_back({.start = at, .length = 0});
-        open = true;
-      }
+      // The pixels of a gap are the empty hall's, with noise of this moment.
+      for (std::uint32_t gap = runs.add(at); gap > 0; --gap)
+        patch.pixels.push_back(digitise(signalOf(pixels_[at - gap], variant), noise.next()));
       patch.pixels.push_back(digitise(signal, noise.next()));
-      run_end = at + 1;
     }
-    if (open) patch.runs.back().length = run_end - patch.runs.back().start;
   }
   return patch;
 }
