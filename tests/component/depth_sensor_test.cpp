@@ -308,7 +308,7 @@ TEST(Recordings, OfAFolderAndOfAnOniFileAreEqualPictureByPicture) {
   ASSERT_TRUE(folder) << folder.error();
   const Played a = playAll(*oni);
   const Played b = playAll(**folder);
-  ASSERT_GE(a.numbers.size(), 5u);  // a busy machine records fewer than it should
+  ASSERT_GE(a.numbers.size(), 20u);
   EXPECT_EQ(a.numbers, b.numbers);
   EXPECT_TRUE(a.since_first == b.since_first);
   EXPECT_TRUE(a.depth_mm == b.depth_mm);
