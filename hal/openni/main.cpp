@@ -30,6 +30,7 @@ struct Options {
   std::string drivers;
   std::string out;
   double seconds = 10;
+  std::uint64_t pictures = 0;  ///< of a recording; 0: as many as come
   bool jpeg = false;
 };
 
@@ -71,7 +72,8 @@ int record(const Options& options) {
   const rt::Timestamp end =
       rt::now() + rt::Nanoseconds(static_cast<std::int64_t>(options.seconds * 1e9));
   std::uint64_t pairs = 0;
-  for (DevicePair pair; rt::now() < end;) {
+  const auto all = [&] { return options.pictures > 0 && pairs >= options.pictures; };
+  for (DevicePair pair; rt::now() < end && !all();) {
     const auto answer = (*device)->next(100ms, pair);
     if (answer == Device::Answer::kPair) ++pairs;
     if (answer == Device::Answer::kGone) return say("the sensor was unplugged");
@@ -140,7 +142,9 @@ int main(int argc, char** argv) {
   CLI::App* recorder = app.add_subcommand("record", "write what a sensor sees into an .oni file");
   addDevice(*recorder, options);
   recorder->add_option("file", options.out)->required();
-  recorder->add_option("--seconds", options.seconds)->capture_default_str();
+  recorder->add_option("--seconds", options.seconds, "at most")->capture_default_str();
+  recorder->add_option("--pictures", options.pictures, "at most; 0: no limit")
+      ->capture_default_str();
   CLI::App* exporter = app.add_subcommand("export", "write a sensor or an .oni file as a folder");
   addDevice(*exporter, options);
   exporter->add_option("folder", options.out)->required();

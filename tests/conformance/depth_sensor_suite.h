@@ -27,6 +27,7 @@ struct OpenDepthSensor {
 /// 6 m away in the middle of a room, with colour.
 struct DepthBackend {
   const char* name;
+  bool repeats;  ///< a recording begins anew at its end
   std::function<OpenDepthSensor()> open;
 };
 
@@ -74,7 +75,9 @@ TEST_P(DepthSensorConformance, NumbersAndExposuresRise) {
     const rt::Timestamp exposure = before->exposure;
     before = sensor_->waitFrame(20s);
     ASSERT_TRUE(before);
-    EXPECT_GT(before->number, number);
+    if (before->number <= number) {
+      EXPECT_TRUE(GetParam().repeats) << "number " << before->number << " after " << number;
+    }
     EXPECT_GT(before->exposure, exposure);
     EXPECT_LE(before->exposure, before->frame_ready);
     EXPECT_LE(before->frame_ready, rt::now());  // nothing from the future

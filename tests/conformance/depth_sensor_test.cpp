@@ -51,9 +51,9 @@ OpenDepthSensor folder() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, DepthSensorConformance,
-                         testing::Values(DepthBackend{"Live", live},
-                                         DepthBackend{"OniFile", oniFile},
-                                         DepthBackend{"Folder", folder}),
+                         testing::Values(DepthBackend{"Live", false, live},
+                                         DepthBackend{"OniFile", true, oniFile},
+                                         DepthBackend{"Folder", true, folder}),
                          [](const auto& backend) { return backend.param.name; });
 
 }  // namespace

@@ -22,11 +22,12 @@ inline testing::AssertionResult runDepth(const TemporaryFolder& scratch,
   return testing::AssertionFailure() << depth.output();
 }
 
-/// A second of the emulated sensor as an .oni file.
+/// A second and a half of the emulated sensor as an .oni file, however long it takes to write.
 inline testing::AssertionResult recordOni(const TemporaryFolder& scratch, const std::string& file,
                                           const emulator::RgbdFormat& format = DepthFeed::small()) {
   const DepthFeed feed(format);
-  return runDepth(scratch, {"record", "--drivers", KAGAMI_DEPTH_DRIVERS, "--seconds", "1.5", file});
+  return runDepth(scratch, {"record", "--drivers", KAGAMI_DEPTH_DRIVERS, "--seconds", "50",
+                            "--pictures", "45", file});
 }
 
 }  // namespace test

@@ -76,6 +76,7 @@ int feed(const Options& options) {
       const double phase = std::fmod(time_s, options.unplug_every_s);
       ring->setPlugged(phase < options.unplug_every_s - options.unplug_for_s);
     }
+    if (rt::now() > exposure + period) continue;  // too late, as a sensor on a slow bus leaves out
     room.draw(time_s, lit, ring->begin());
     ring->publish(exposure);
     std::this_thread::sleep_until(exposure);
