@@ -6,7 +6,7 @@ namespace emulator::studio {
 
 /// Runs once per vertex and body: colour and gloss, kept for good. At rest the surface is dense
 /// enough (a vertex every few millimetres), and a picture then costs a tenth of shading every
-/// pixel.
+/// pixel. What is printed on clothes has sharper edges: that is left to the pixels.
 inline constexpr const char* kPaintVertex = R"(
 layout(location = 3) in vec3 rest;
 layout(location = 4) in vec2 uv;
@@ -14,7 +14,7 @@ layout(location = 5) in float material;
 out vec4 paint;
 void main() {
   int m = int(material + 0.5);
-  paint = vec4(athleteAlbedo(m, uv, rest), athleteGloss(m, rest));
+  paint = vec4(athleteGround(m, uv, rest), athleteGloss(m, rest));
   gl_Position = vec4(0.0);
 }
 )";
@@ -65,6 +65,23 @@ uniform vec4 floor_area;         // low x, y, size x, y of this map
 uniform vec4 hall_area;          // low x, y, size x, y of floor_light
 uniform vec2 map_size;
 out vec4 share;
+/// What feet and shins close by leave of the light that comes from everywhere.
+float openAt(vec2 at) {
+  const float kReach = 0.17, kTall = 0.4;
+  vec2 to_uv = 0.5 / shadow_area.zw;
+  vec2 uv = (at - shadow_area.xy) * to_uv + 0.5;
+  if (any(lessThan(uv, vec2(0.02))) || any(greaterThan(uv, vec2(0.98)))) return 1.0;
+  float low = 0.0;
+  for (int lamp = 0; lamp < kLamps; ++lamp) {
+    for (int i = 0; i < 6; ++i) {
+      float r = kReach * sqrt((float(i) + 0.5) / 6.0);
+      float a = (float(i) + 0.37 * float(lamp)) * 2.399963;
+      float height = lamp_at[lamp].z - occluderBelow(uv + vec2(cos(a), sin(a)) * r * to_uv, lamp);
+      if (height > 0.012) low += max(1.0 - height / kTall, 0.0);
+    }
+  }
+  return 1.0 - 0.62 * smoothstep(0.0, 0.75, low / float(6 * kLamps));
+}
 void main() {
   vec2 at = floor_area.xy + gl_FragCoord.xy / map_size * floor_area.zw;
   float all = texture(floor_light, (at - hall_area.xy) / hall_area.zw).r;
@@ -79,7 +96,7 @@ void main() {
     hidden += gone / float(kLamps);
   }
   float rest = max(all - key, 0.0) * min(2.2 * hidden, 0.92);
-  share = vec4(clamp(1.0 - (lost + rest) / max(all, 1e-3), 0.06, 1.0), 0.0, 0.0, 1.0);
+  share = vec4(clamp((1.0 - (lost + rest) / max(all, 1e-3)) * openAt(at), 0.06, 1.0), 0.0, 0.0, 1.0);
 }
 )";
 
@@ -87,6 +104,8 @@ inline constexpr const char* kBodyVertex = R"(
 layout(location = 0) in vec3 opens;
 layout(location = 1) in vec3 closes;
 layout(location = 2) in vec3 normal;
+layout(location = 3) in vec3 rest;
+layout(location = 5) in float material;
 layout(location = 6) in vec3 fallen;
 layout(location = 7) in vec4 paint;
 uniform mat3 rotation;
@@ -97,6 +116,9 @@ uniform vec3 eye;
 uniform float instant;       // 0 when the shutter opens, 1 when it closes
 out vec3 v_light;
 out float v_depth;
+out vec3 v_fallen;
+out vec3 v_rest;
+flat out int v_material;
 void main() {
   vec3 world = mix(opens, closes, instant);
   vec3 p = rotation * world + translation;
@@ -111,17 +133,29 @@ void main() {
   float rim = pow(1.0 - clamp(dot(normal, to_eye), 0.0, 1.0), 4.0) * 0.12 * gloss;
   v_light = fallen * (paint.rgb + shine + rim);
   v_depth = p.z;
+  v_fallen = fallen;
+  v_rest = rest;
+  v_material = int(material + 0.5);
 }
 )";
 
+/// With athleteAlbedoSource() before it.
 inline constexpr const char* kBodyFragment = R"(
 in vec3 v_light;
 in float v_depth;
+in vec3 v_fallen;
+in vec3 v_rest;
+flat in int v_material;
 uniform sampler2D behind;    // depth of the empty hall
 layout(location = 0) out vec4 colour;
 void main() {
   if (v_depth > texelFetch(behind, ivec2(gl_FragCoord.xy), 0).r + 0.01) discard;
-  colour = vec4(sqrt(clamp(v_light, 0.0, 1.0)), 1.0);
+  vec3 light = v_light;
+  if (v_material >= 3) {
+    vec4 print = athletePrint(v_material, v_rest);
+    light = mix(light, v_fallen * print.rgb, print.a);
+  }
+  colour = vec4(sqrt(clamp(light, 0.0, 1.0)), 1.0);
 }
 )";
 

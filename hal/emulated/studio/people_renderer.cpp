@@ -63,11 +63,19 @@ void attribute(GLuint index, GLint size, std::size_t stride, std::size_t offset)
 
 }  // namespace
 
+void PeopleRenderer::restAttributes(const Mesh& mesh) {
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.rest.get());
+  attribute(3, 3, sizeof(RestVertex), offsetof(RestVertex, rest));
+  attribute(4, 2, sizeof(RestVertex), offsetof(RestVertex, uv));
+  attribute(5, 1, sizeof(RestVertex), offsetof(RestVertex, material));
+}
+
 PeopleRenderer::Mesh PeopleRenderer::upload(const Body& body) {
   Mesh mesh{.draw = gl::makeVertexArray(),
             .light = gl::makeVertexArray(),
             .posed = gl::makeBuffer(),
             .fallen = gl::makeBuffer(),
+            .rest = gl::makeBuffer(),
             .paint = gl::makeBuffer(),
             .indices = gl::makeBuffer(),
             .count = static_cast<GLsizei>(body.triangles.size()),
@@ -88,6 +96,17 @@ PeopleRenderer::Mesh PeopleRenderer::upload(const Body& body) {
   posedAttributes();
   glBindVertexArray(mesh.draw.get());
   posedAttributes();
+  std::vector<RestVertex> rest;
+  rest.reserve(count);
+  for (const Vertex& v : body.vertices) {
+    rest.push_back({{v.position.x(), v.position.y(), v.position.z()},
+                    {v.uv.x(), v.uv.y()},
+                    static_cast<float>(v.material)});
+  }
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.rest.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * sizeof(RestVertex)), rest.data(),
+               GL_STATIC_DRAW);
+  restAttributes(mesh);
   reserve(mesh.fallen, 3 * sizeof(float), GL_STREAM_COPY);
   attribute(6, 3, 3 * sizeof(float), 0);
   reserve(mesh.paint, 4 * sizeof(float), GL_STATIC_COPY);
@@ -100,32 +119,23 @@ PeopleRenderer::Mesh PeopleRenderer::upload(const Body& body) {
   return mesh;
 }
 
-void PeopleRenderer::paint(const Mesh& mesh, const Body& body) const {
-  std::vector<RestVertex> rest;
-  rest.reserve(body.vertices.size());
-  for (const Vertex& v : body.vertices) {
-    rest.push_back({{v.position.x(), v.position.y(), v.position.z()},
-                    {v.uv.x(), v.uv.y()},
-                    static_cast<float>(v.material)});
-  }
-  const gl::VertexArray vertex_array = gl::makeVertexArray();
-  const gl::Buffer buffer = gl::makeBuffer();
-  glBindVertexArray(vertex_array.get());
-  glBindBuffer(GL_ARRAY_BUFFER, buffer.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest.size() * sizeof(RestVertex)),
-               rest.data(), GL_STATIC_DRAW);
-  attribute(3, 3, sizeof(RestVertex), offsetof(RestVertex, rest));
-  attribute(4, 2, sizeof(RestVertex), offsetof(RestVertex, uv));
-  attribute(5, 1, sizeof(RestVertex), offsetof(RestVertex, material));
-  glUseProgram(paint_program_.get());
+void PeopleRenderer::setColours(const gl::Program& program, const Body& body) {
   for (const AlbedoUniform& colour : albedoUniforms(body.shape)) {
-    const GLint at = uniform(paint_program_, colour.name);
+    const GLint at = uniform(program, colour.name);
     if (colour.components == 3) {
       glUniform3fv(at, 1, colour.value);
     } else {
       glUniform4fv(at, 1, colour.value);
     }
   }
+}
+
+void PeopleRenderer::paint(const Mesh& mesh, const Body& body) const {
+  const gl::VertexArray vertex_array = gl::makeVertexArray();
+  glBindVertexArray(vertex_array.get());
+  restAttributes(mesh);
+  glUseProgram(paint_program_.get());
+  setColours(paint_program_, body);
   capture(vertex_array.get(), mesh.paint.get(), mesh.vertices);
 }
 
@@ -145,7 +155,8 @@ PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::v
       "void main() { gl_Position = vec4(vec2(float((gl_VertexID & 1) << 2) - 1.0, "
       "float((gl_VertexID & 2) << 1) - 1.0), 0.0, 1.0); }";
   floor_program_ = makeProgram("floor", everywhere, std::string(kShadowGlsl) + kFloorFragment);
-  body_program_ = makeProgram("people", std::string(kLensGlsl) + kBodyVertex, kBodyFragment);
+  body_program_ = makeProgram("people", std::string(kLensGlsl) + kBodyVertex,
+                              std::string(athleteAlbedoSource()) + kBodyFragment);
   depth_program_ = makeProgram("depth", std::string(kLensGlsl) + kBodyVertex, kDepthFragment);
 
   GLuint maps = 0;
@@ -421,6 +432,7 @@ void PeopleRenderer::drawStep(const View& view, const cv::Rect& area, float inst
   glBindTexture(GL_TEXTURE_2D, view.depth.get());
   for (const Shown& shown : shown_) {
     const Mesh& mesh = surfaces_[shown.body];
+    setColours(body_program_, cast_[shown.body].surface);
     glBindVertexArray(mesh.draw.get());
     glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
   }

@@ -65,6 +65,7 @@ class PeopleRenderer {
     gl::VertexArray light;
     gl::Buffer posed;
     gl::Buffer fallen;
+    gl::Buffer rest;
     gl::Buffer paint;
     gl::Buffer indices;
     GLsizei count = 0;
@@ -80,11 +81,13 @@ class PeopleRenderer {
     PosedMesh shadow;
   };
 
+  static void restAttributes(const Mesh& mesh);
   static Mesh upload(const Body& body);
   void paint(const Mesh& mesh, const Body& body) const;
   void drawShadows(double second);
   void lightBodies(double second);
   void shadeFloor(double second);
+  static void setColours(const gl::Program& program, const Body& body);
   void setLamps(const gl::Program& program, double second) const;
   void setCamera(const gl::Program& program, const StudioCamera& camera) const;
   [[nodiscard]] std::vector<cv::Rect> areasOf(const StudioCamera& camera) const;

@@ -141,22 +141,32 @@ vec3 athleteHairColour(vec3 p) {
   return athlete_hair * (0.45 + 0.75 * fine + 0.5 * locks);
 }
 
+// Where the sleeve's hem begins, along the arm.
+float athleteSleeve(vec3 p) {
+  return dot(vec3(abs(p.x), p.y, p.z) - vec3(0.18, -0.015, 1.452), vec3(0.9131, 0.0, -0.4078)) -
+         3.0 * max(1.22 - p.z, 0.0);
+}
+
 vec3 athleteShirtColour(vec3 p) {
   float weave = 0.96 + 0.04 * sin(p.x * 2600.0) * sin(p.z * 2600.0);
   weave *= 0.93 + 0.14 * athleteNoise(p * vec3(70.0, 70.0, 35.0));
-  vec3 colour = athlete_shirt;
-  // Panels at the flanks, a band across the chest, cuffs, collar, number and a crest.
+  float seam = smoothstep(0.0014, 0.0006, abs(p.z - 0.860)) +
+               smoothstep(0.0014, 0.0006, abs(athleteSleeve(p) - 0.005));
+  return athlete_shirt * weave * (1.0 - 0.35 * clamp(seam, 0.0, 1.0));
+}
+
+// Panels at the flanks, a band across the chest, cuffs, collar, number, name and a crest.
+vec4 athleteShirtPrint(vec3 p) {
   float side = abs(p.x);
   float flank = smoothstep(0.026, 0.022, abs(p.y + 0.01)) * step(p.z, 1.36) * step(0.1, side);
   float collar = (p.z - 1.505) * 0.93 + (p.y + 0.055) * 0.36 - 6.0 * side * side;
-  float along = dot(vec3(side, p.y, p.z) - vec3(0.18, -0.015, 1.452), vec3(0.9131, 0.0, -0.4078)) -
-                3.0 * max(1.22 - p.z, 0.0);
-  float trim = max(max(step(-0.017, collar) * step(side, 0.13), smoothstep(0.186, 0.188, along)),
+  float trim = max(max(smoothstep(-0.018, -0.016, collar) * step(side, 0.13),
+                       smoothstep(0.186, 0.188, athleteSleeve(p))),
                    flank);
   bool back = p.y < -0.02;
   vec2 at = vec2(back ? p.x : -p.x, p.z);
   float band = back ? 0.0
-                    : step(abs(p.z - 1.255 + 0.0 * p.x), 0.028) * step(side, 0.19) *
+                    : smoothstep(0.029, 0.027, abs(p.z - 1.255)) * step(side, 0.19) *
                           (0.75 + 0.25 * step(0.3, fract(p.x * 9.0)));
   float number = back ? athleteNumber(at - vec2(0.0, 1.245), 0.085)
                       : athleteNumber(at - vec2(-0.075, 1.375), 0.026);
@@ -166,41 +176,46 @@ vec3 athleteShirtColour(vec3 p) {
     name *= step(0.22, fract(at.x * 24.0));
   }
   float crest = back ? 0.0 : athleteSpot(at, vec2(0.078, 1.375), vec2(0.018, 0.022), 0.06);
-  colour = mix(colour, athlete_trim, clamp(max(max(trim, band * 0.9), max(number, name)), 0.0, 1.0));
-  colour = mix(colour, mix(athlete_trim, athlete_shorts, step(0.5, fract(at.x * 70.0))), crest);
-  float seam = smoothstep(0.0014, 0.0006, abs(p.z - 0.860)) + smoothstep(0.0014, 0.0006, abs(along - 0.005));
-  return colour * weave * (1.0 - 0.35 * clamp(seam, 0.0, 1.0));
+  vec4 print = vec4(athlete_trim * 0.96,
+                    clamp(max(max(trim, band * 0.9), max(number, name)), 0.0, 1.0));
+  vec3 stripes = mix(athlete_trim, athlete_shorts, step(0.5, fract(at.x * 70.0)));
+  return mix(print, vec4(stripes, 1.0), crest);
 }
 
 vec3 athleteShortsColour(vec3 p) {
   float weave = 0.9 + 0.2 * athleteNoise(p * vec3(60.0, 60.0, 30.0));
-  float side = abs(p.x);
+  float hem = smoothstep(0.0012, 0.0005, abs(p.z - 0.622));
+  return athlete_shorts * weave * (1.0 - 0.4 * hem);
+}
+
+vec4 athleteShortsPrint(vec3 p) {
   float stripe = 0.0;
   for (int i = -1; i <= 1; ++i) {
     stripe = max(stripe, smoothstep(0.0055, 0.0045, abs(p.y - 0.015 * float(i))));
   }
-  stripe *= step(0.13, side);
+  stripe *= step(0.13, abs(p.x));
   float badge = athleteSpot(vec2(p.x, p.z), vec2(0.105, 0.665), vec2(0.02, 0.014), 0.06) *
                 step(0.03, p.y);
-  float hem = smoothstep(0.0012, 0.0005, abs(p.z - 0.622));
-  vec3 colour = mix(athlete_shorts, athlete_trim, max(stripe, badge));
-  return colour * weave * (1.0 - 0.4 * hem);
+  return vec4(athlete_trim, max(stripe, badge));
 }
 
 vec3 athleteShoeColour(vec3 p) {
-  float x = abs(p.x) - 0.115;
-  vec3 colour = athlete_shoe * (0.92 + 0.16 * athleteNoise(p * 260.0));
-  // Toe cap, heel counter, three slanted bars on the flanks, tongue and laces.
-  colour = mix(colour, athlete_shoe * 0.45, smoothstep(0.120, 0.124, p.y) * step(p.z, 0.055));
-  colour = mix(colour, athlete_trim * 0.9, smoothstep(-0.048, -0.052, p.y) * step(p.z, 0.075));
+  return athlete_shoe * (0.92 + 0.16 * athleteNoise(p * 260.0));
+}
+
+// Toe cap, heel counter, three slanted bars on the flanks, tongue and laces.
+vec4 athleteShoePrint(vec3 p) {
+  float x = abs(abs(p.x) - 0.115);
+  vec4 print = vec4(athlete_shoe * 0.45, smoothstep(0.120, 0.124, p.y) * step(p.z, 0.055));
+  print = mix(print, vec4(athlete_trim * 0.9, 1.0), smoothstep(-0.048, -0.052, p.y) * step(p.z, 0.075));
   float bars = step(0.5, fract((p.y - p.z * 0.5) * 36.0)) * step(0.0, p.y) * step(p.y, 0.075) *
-               step(0.026, abs(x)) * step(p.z, 0.070) * step(0.022, p.z);
-  colour = mix(colour, athlete_trim, bars);
-  float tongue = step(abs(x), 0.017) * step(0.03, p.y) * step(p.y, 0.115) * step(0.055, p.z);
-  colour = mix(colour, athlete_shoe * 0.35, tongue);
-  float lace = step(0.45, fract(p.y * 75.0 + 0.35 * abs(x) / 0.017)) * step(abs(x), 0.021) *
+               step(0.026, x) * step(p.z, 0.070) * step(0.022, p.z);
+  print = mix(print, vec4(athlete_trim, 1.0), bars);
+  float tongue = step(x, 0.017) * step(0.03, p.y) * step(p.y, 0.115) * step(0.055, p.z);
+  print = mix(print, vec4(athlete_shoe * 0.35, 1.0), tongue);
+  float lace = step(0.45, fract(p.y * 75.0 + 0.35 * x / 0.017)) * step(x, 0.021) *
                step(0.032, p.y) * step(p.y, 0.112) * step(0.055, p.z);
-  return mix(colour, vec3(0.78), lace);
+  return mix(print, vec4(vec3(0.78), 1.0), lace);
 }
 
 vec3 athleteBallColour(vec3 p) {
@@ -216,7 +231,7 @@ vec3 athleteBallColour(vec3 p) {
   return colour * (0.85 + 0.3 * athleteNoise(n * 3.0));
 }
 
-vec3 athleteAlbedo(int material, vec2 uv, vec3 rest_position) {
+vec3 athleteGround(int material, vec2 uv, vec3 rest_position) {
   vec3 p = rest_position;
   if (material == 0) return athleteSkinColour(p);
   if (material == 1) return athleteEyeColour(p);
@@ -234,6 +249,18 @@ vec3 athleteAlbedo(int material, vec2 uv, vec3 rest_position) {
     return mix(vec3(0.74, 0.73, 0.70), vec3(0.30, 0.28, 0.25), 0.35 * dirt);
   }
   return athleteBallColour(p);
+}
+
+vec4 athletePrint(int material, vec3 rest_position) {
+  if (material == 3) return athleteShirtPrint(rest_position);
+  if (material == 4) return athleteShortsPrint(rest_position);
+  if (material == 6) return athleteShoePrint(rest_position);
+  return vec4(0.0);
+}
+
+vec3 athleteAlbedo(int material, vec2 uv, vec3 rest_position) {
+  vec4 print = athletePrint(material, rest_position);
+  return mix(athleteGround(material, uv, rest_position), print.rgb, print.a);
 }
 
 float athleteGloss(int material, vec3 rest_position) {

@@ -10,9 +10,14 @@ namespace emulator::studio {
 /// albedoUniforms() names values for, and
 ///
 ///   vec3 athleteAlbedo(int material, vec2 uv, vec3 rest_position);   linear light, 0..1
+///   vec3 athleteGround(int material, vec2 uv, vec3 rest_position);   without what is printed on it
+///   vec4 athletePrint(int material, vec3 rest_position);             that, and its share
 ///   float athleteGloss(int material, vec3 rest_position);            0 dull .. 1 wet
 ///   vec3 athleteBump(int material, vec3 rest_position);              added to a unit normal at
 ///                                                                    rest, for pores and weave
+///
+/// Ground costs ten times what print does and is as smooth as the mesh: a renderer may take the one
+/// per vertex and the other per pixel.
 ///
 /// `rest_position` is Vertex::position, interpolated; `material` the vertex's, flat.
 [[nodiscard]] const char* athleteAlbedoSource();
