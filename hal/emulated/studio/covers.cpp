@@ -120,16 +120,19 @@ cv::Mat drawPlaster(std::uint64_t seed) {
   const cv::Mat stain = fractalNoise({kSide, kSide}, 340, 5, seed);
   const cv::Mat grain = fractalNoise({kSide, kSide}, 10, 4, seed + 1);
   cv::Mat picture = grey({kSide, kSide}, [&](int x, int y) {
-    return 0.90f + 0.07f * (stain.at<float>(y, x) - 0.5f) + 0.12f * (grain.at<float>(y, x) - 0.5f);
+    return 0.90f + 0.07f * (stain.at<float>(y, x) - 0.5f) + 0.045f * (grain.at<float>(y, x) - 0.5f);
   });
   Random random(seed);
-  for (int i = 0; i < 120; ++i) {  // marks that balls have left
+  for (int i = 0; i < 80; ++i) {  // marks that balls have left
     const cv::Point at(static_cast<int>(random.next() % kSide),
                        static_cast<int>(random.next() % kSide));
     const int r = 4 + static_cast<int>(random.next() % 18);
     cv::Mat patch = picture.clone();
-    cv::circle(patch, at, r, cv::Scalar::all(random.uniform(120, 190)), cv::FILLED, cv::LINE_AA);
-    const double weight = random.uniform(0.08f, 0.35f);
+    // A ball presses its middle on and only grazes round it.
+    const double dark = random.uniform(120, 190);
+    cv::circle(patch, at, r, cv::Scalar::all(0.5 * dark + 110), cv::FILLED, cv::LINE_AA);
+    cv::circle(patch, at, r * 2 / 3, cv::Scalar::all(dark), cv::FILLED, cv::LINE_AA);
+    const double weight = random.uniform(0.05f, 0.22f);
     const cv::Rect area =
         cv::Rect(at.x - r - 1, at.y - r - 1, 2 * r + 3, 2 * r + 3) & cv::Rect(0, 0, kSide, kSide);
     cv::Mat target = picture(area);
@@ -160,8 +163,8 @@ cv::Mat drawWood(std::uint64_t seed) {
   return grey({kSide, kSide}, [&](int x, int y) {
     const float ring =
         0.5f + 0.5f * std::sin(static_cast<float>(y) * 0.10f + 9 * noise.at<float>(y, x));
-    return 0.78f + 0.24f * (streaks.at<float>(y, x) - 0.5f) + 0.10f * (ring - 0.5f) +
-           0.2f * (noise.at<float>(y, x) - 0.5f);
+    return 0.78f + 0.24f * (streaks.at<float>(y, x) - 0.5f) + 0.06f * (ring - 0.5f) +
+           0.09f * (noise.at<float>(y, x) - 0.5f);
   });
 }
 
@@ -171,8 +174,8 @@ cv::Mat drawVinyl(std::uint64_t seed) {
   const cv::Mat grain = fractalNoise({kSide, kSide}, 5, 2, seed + 1);
   return grey({kSide, kSide}, [&](int x, int y) {
     const bool seam = x < 3;
-    return (seam ? 0.62f : 0.86f) + 0.26f * (wear.at<float>(y, x) - 0.5f) +
-           0.18f * (grain.at<float>(y, x) - 0.5f);
+    return (seam ? 0.70f : 0.86f) + 0.14f * (wear.at<float>(y, x) - 0.5f) +
+           0.06f * (grain.at<float>(y, x) - 0.5f);
   });
 }
 

@@ -298,14 +298,19 @@ void buildBalls(SurfaceBuilder& hall, Random& random) {
 }
 
 void buildSmallThings(SurfaceBuilder& hall, Random& random) {
-  // Training cones on the free floor: discs with a knob.
+  // Training cones on the free floor.
   for (int i = 0; i < 9; ++i) {
     const float x = -4.8f + 1.2f * static_cast<float>(i) + random.uniform(-0.06f, 0.06f);
     const Vector3f foot(x, 3.55f + random.uniform(-0.05f, 0.05f), 0);
     const Paint cone =
         vinyl(i % 3 == 0 ? Vector3f(0.85f, 0.62f, 0.05f) : Vector3f(0.86f, 0.23f, 0.03f));
-    hall.bar(foot, foot + Vector3f(0, 0, 0.025f), 0.095f, 12, cone);
-    hall.bar(foot + Vector3f(0, 0, 0.025f), foot + Vector3f(0, 0, 0.05f), 0.055f, 12, cone);
+    constexpr int kRings = 5;
+    constexpr float kRing = 0.022f;
+    for (int ring = 0; ring < kRings; ++ring) {
+      const float z = kRing * static_cast<float>(ring);
+      const float radius = ring == 0 ? 0.105f : 0.090f - 0.014f * static_cast<float>(ring);
+      hall.bar(foot + Vector3f(0, 0, z), foot + Vector3f(0, 0, z + kRing), radius, 10, cone);
+    }
   }
   // Bags and bottles at the benches.
   hall.box({-1.9f, 6.72f, 0.47f}, {0.52f, 0.24f, 0.24f}, 0.15f, vinyl({0.05f, 0.06f, 0.08f}));
