@@ -11,6 +11,7 @@
 
 #include <OpenNI.h>
 
+#include "hal/openni/oni_header.h"
 #include "hal/openni/pair_maker.h"
 #include "rt/printable.h"
 
@@ -289,7 +290,7 @@ std::expected<void, std::string> Device::record(const std::string& path) {
       made.recorder.start() != ni::STATUS_OK) {
     return std::unexpected(path + ": cannot be recorded (" + reason() + ")");
   }
-  return {};
+  return writeStreamCount(path, made.facts.colour ? 2 : 1, 5s);
 }
 
 Device::Answer Device::next(rt::Nanoseconds timeout, DevicePair& pair) {

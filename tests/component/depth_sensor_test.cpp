@@ -284,7 +284,8 @@ struct Played {
 Played playAll(hal::DepthSensor& sensor) {
   Played played;
   rt::Timestamp first;
-  while (sensor.status().state != DepthState::kEnded) {
+  const rt::Timestamp end = rt::now() + 60s;
+  while (sensor.status().state != DepthState::kEnded && rt::now() < end) {
     const auto frame = sensor.waitFrame(500ms);
     if (!frame) continue;
     if (played.numbers.empty()) first = frame->exposure;

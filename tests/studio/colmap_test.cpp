@@ -109,7 +109,7 @@ TEST(Colmap, FindsTheCamerasWhereTheTruthSaysTheyAre) {
       run(colmap, folder.path(),
           {"feature_extractor", "--database_path", database, "--image_path", pictures,
            "--ImageReader.camera_model", "OPENCV", "--ImageReader.camera_params", kDataSheet,
-           "--SiftExtraction.use_gpu", "0", "--SiftExtraction.max_num_features", "2000",
+           "--SiftExtraction.use_gpu", "0", "--SiftExtraction.max_num_features", "4000",
            "--SiftExtraction.first_octave", "0"}));
   ASSERT_NO_FATAL_FAILURE(
       run(colmap, folder.path(),
