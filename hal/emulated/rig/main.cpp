@@ -97,7 +97,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--studio-cache-gib", a.studio.cache_gib, "limit of that folder; 0: keeps nothing")
       ->check(CLI::Range(0.0, 10'000.0))
       ->capture_default_str();
-  app.add_option("--studio-grow", a.studio.grow, "go on drawing the play while it runs")
+  app.add_option("--studio-grow", a.studio.grow, "go on drawing the play while no camera sends")
       ->capture_default_str();
   app.add_flag("--depth-sensor", a.studio.depth_sensor,
                "feed the emulated depth sensor with the studio, too");

@@ -22,7 +22,7 @@ constexpr float kTallest_m = 2.9f;
 constexpr float kNear_m = 0.3f;
 constexpr float kFar_m = 30;
 /// A point that goes further than this across the picture is drawn more than once.
-constexpr double kStep_px = 1.6;
+constexpr double kStep_px = 2.2;
 constexpr int kMostSteps = 8;
 constexpr double kLensBlur_px = 0.62;
 
@@ -341,10 +341,10 @@ void PeopleRenderer::setCamera(const gl::Program& program, const StudioCamera& c
 }
 
 /// Where people are in the picture: one rectangle each, those that overlap as one.
-std::vector<cv::Rect> PeopleRenderer::areasOf(const StudioCamera& camera) const {
+std::vector<PeopleRenderer::Area> PeopleRenderer::areasOf(const StudioCamera& camera) const {
   const cv::Rect picture(0, 0, static_cast<int>(camera.model.image_size.width),
                          static_cast<int>(camera.model.image_size.height));
-  std::vector<cv::Rect> areas;
+  std::vector<Area> areas;
   for (const Shown& shown : shown_) {
     Eigen::AlignedBox2d box;
     bool behind = false;
@@ -358,20 +358,22 @@ std::vector<cv::Rect> PeopleRenderer::areasOf(const StudioCamera& camera) const 
     }
     if (behind) continue;
     constexpr int kMargin = 6;
-    const cv::Rect area =
+    const cv::Rect rect =
         cv::Rect(cv::Point(static_cast<int>(std::clamp(box.min().x(), -1e4, 1e4)) - kMargin,
                            static_cast<int>(std::clamp(box.min().y(), -1e4, 1e4)) - kMargin),
                  cv::Point(static_cast<int>(std::clamp(box.max().x(), -1e4, 1e4)) + kMargin,
                            static_cast<int>(std::clamp(box.max().y(), -1e4, 1e4)) + kMargin)) &
         picture;
-    if (!area.empty()) areas.push_back(area);
+    if (!rect.empty()) areas.push_back({rect, {&shown}});
   }
   for (bool merged = true; merged;) {
     merged = false;
     for (std::size_t i = 0; i < areas.size() && !merged; ++i) {
       for (std::size_t k = i + 1; k < areas.size() && !merged; ++k) {
-        if ((areas[i] & areas[k]).empty()) continue;
-        areas[i] |= areas[k];
+        if ((areas[i].rect & areas[k].rect).empty()) continue;
+        areas[i].rect |= areas[k].rect;
+        areas[i].people.insert(areas[i].people.end(), areas[k].people.begin(),
+                               areas[k].people.end());
         areas.erase(areas.begin() + static_cast<std::ptrdiff_t>(k));
         merged = true;
       }
@@ -380,24 +382,29 @@ std::vector<cv::Rect> PeopleRenderer::areasOf(const StudioCamera& camera) const 
   return areas;
 }
 
+/// How many instants of the exposure make its blur: no two more than kStep_px apart.
+int PeopleRenderer::stepsOf(const Area& area, const StudioCamera& camera) {
+  double way_px = 0;
+  for (const Shown* shown : area.people) {
+    const double distance =
+        std::max(0.5, (shown->mesh.bounds.center().cast<double>() - camera.centre()).norm() - 0.5);
+    way_px = std::max(way_px, shown->mesh.way_m * camera.model.focal_px[0] / distance);
+  }
+  return std::clamp(static_cast<int>(std::ceil(way_px / kStep_px)), 1, kMostSteps);
+}
+
 std::vector<PeoplePicture> PeopleRenderer::draw(std::size_t camera) {
   const View& view = views_[camera];
-  const StudioCamera& lens = view.camera;
   std::vector<PeoplePicture> pictures;
-  double way_px = 0;
-  for (const Shown& shown : shown_) {
-    const double distance =
-        std::max(0.5, (shown.mesh.bounds.center().cast<double>() - lens.centre()).norm() - 0.5);
-    way_px = std::max(way_px, shown.mesh.way_m * lens.model.focal_px[0] / distance);
-  }
-  const int steps = std::clamp(static_cast<int>(std::ceil(way_px / kStep_px)), 1, kMostSteps);
-  for (const cv::Rect& area : areasOf(lens)) {
-    PeoplePicture picture{.area = area, .roots = cv::Mat(area.size(), CV_8UC4)};
+  for (const Area& area : areasOf(view.camera)) {
+    const cv::Rect& rect = area.rect;
+    const int steps = stepsOf(area, view.camera);
+    PeoplePicture picture{.area = rect, .roots = cv::Mat(rect.size(), CV_8UC4)};
     cv::Mat sum;
-    if (steps > 1) sum = cv::Mat(area.size(), CV_32FC4, cv::Scalar::all(0));
+    if (steps > 1) sum = cv::Mat(rect.size(), CV_32FC4, cv::Scalar::all(0));
     for (int step = 0; step < steps; ++step) {
       drawStep(view, area, value((step + 0.5) / steps));
-      glReadPixels(area.x, area.y, area.width, area.height, GL_RGBA, GL_UNSIGNED_BYTE,
+      glReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_UNSIGNED_BYTE,
                    picture.roots.data);
       if (steps > 1) cv::accumulate(picture.roots, sum);
     }
@@ -410,12 +417,12 @@ std::vector<PeoplePicture> PeopleRenderer::draw(std::size_t camera) {
   return pictures;
 }
 
-void PeopleRenderer::drawStep(const View& view, const cv::Rect& area, float instant) const {
+void PeopleRenderer::drawStep(const View& view, const Area& area, float instant) const {
   const SizePx size = view.camera.model.image_size;
   glBindFramebuffer(GL_FRAMEBUFFER, target_.get());
   glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
   glEnable(GL_SCISSOR_TEST);
-  glScissor(area.x, area.y, area.width, area.height);
+  glScissor(area.rect.x, area.rect.y, area.rect.width, area.rect.height);
   const GLfloat kClear[] = {0, 0, 0, 0};
   const GLfloat kDeep = 1;
   glClearBufferfv(GL_COLOR, 0, kClear);
@@ -430,9 +437,9 @@ void PeopleRenderer::drawStep(const View& view, const cv::Rect& area, float inst
   glUniform1i(uniform(body_program_, "behind"), 0);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, view.depth.get());
-  for (const Shown& shown : shown_) {
-    const Mesh& mesh = surfaces_[shown.body];
-    setColours(body_program_, cast_[shown.body].surface);
+  for (const Shown* shown : area.people) {
+    const Mesh& mesh = surfaces_[shown->body];
+    setColours(body_program_, cast_[shown->body].surface);
     glBindVertexArray(mesh.draw.get());
     glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
   }

@@ -80,6 +80,11 @@ class PeopleRenderer {
     PosedMesh mesh;
     PosedMesh shadow;
   };
+  /// A rectangle of one camera's picture and all who are in it.
+  struct Area {
+    cv::Rect rect;
+    std::vector<const Shown*> people;
+  };
 
   static void restAttributes(const Mesh& mesh);
   static Mesh upload(const Body& body);
@@ -90,8 +95,9 @@ class PeopleRenderer {
   static void setColours(const gl::Program& program, const Body& body);
   void setLamps(const gl::Program& program, double second) const;
   void setCamera(const gl::Program& program, const StudioCamera& camera) const;
-  [[nodiscard]] std::vector<cv::Rect> areasOf(const StudioCamera& camera) const;
-  void drawStep(const View& view, const cv::Rect& area, float instant) const;
+  [[nodiscard]] std::vector<Area> areasOf(const StudioCamera& camera) const;
+  [[nodiscard]] static int stepsOf(const Area& area, const StudioCamera& camera);
+  void drawStep(const View& view, const Area& area, float instant) const;
   void makeTargets(int width, int height);
 
   const std::vector<CastMember>& cast_;

@@ -37,6 +37,8 @@ constexpr std::uint32_t kBlock = 10;  ///< moments in one file of the cache
 constexpr unsigned kMostThreads = 8;
 constexpr std::uint64_t kUsualMomentBytes = 160'000;  // per camera
 
+constexpr rt::Nanoseconds kRest = std::chrono::seconds(1);
+
 using Clock = std::chrono::steady_clock;
 
 /// The thread that calls runs only when nobody else wants the processor.
@@ -94,6 +96,7 @@ struct Play::State {
     const std::lock_guard lock(mutex);
     return drawn[turn] != 0;
   }
+  [[nodiscard]] bool rests() const { return rt::now() < rt::fromNs(shown_ns.load()) + kRest; }
   void tell(double share, const char* what) {
     const std::lock_guard lock(progress_mutex);
     progress(share, what);
@@ -127,6 +130,7 @@ struct Play::State {
   std::atomic<std::size_t> backdrops_done = 0;
   std::atomic<bool> hall_drawn = false;  // in every view
   std::atomic<bool> playing = false;
+  std::atomic<std::int64_t> shown_ns = 0;  // when a camera was shown something
   std::atomic<bool> stop = false;
   unsigned thread_count = 0;
   std::uint32_t working = 0;  // guarded by mutex
@@ -216,10 +220,14 @@ void Play::State::drawMoments(std::size_t worker) {
   bool yielding = false;
   while (!stop) {
     if (playing) {
-      // One goes on, behind everybody else.
+      // One goes on, behind everybody else, while no camera sends.
       if (worker != 0 || !options.grow) return;
       if (!yielding) yieldToEverybody();
       yielding = true;
+      if (rests()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        continue;
+      }
     }
     const std::uint32_t turn = next++;
     if (turn >= order.size()) return;
@@ -370,6 +378,10 @@ std::vector<std::uint8_t> Play::background(std::uint32_t camera, std::uint32_t v
 
 const RgbdTrack* Play::rgbd() const {
   return state_->rgbd.get();
+}
+
+void Play::rest(rt::Timestamp now) {
+  state_->shown_ns.store(rt::toNs(now), std::memory_order_relaxed);
 }
 
 void Play::waitFor(std::uint32_t moments) const {

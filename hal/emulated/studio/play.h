@@ -12,6 +12,7 @@
 #include "hal/emulated/studio/patch.h"
 #include "hal/emulated/studio/studio_options.h"
 #include "hal/emulated/studio/studio_rig.h"
+#include "rt/clock.h"
 
 namespace emulator::studio {
 
@@ -47,6 +48,11 @@ class Play {
                                                      std::uint32_t variant) const;
   /// What the depth sensor sees; nullptr without one.
   [[nodiscard]] const RgbdTrack* rgbd() const;
+  /// A camera is being shown something: whoever draws rests for a second, for drawing and the box
+  /// would slow each other down.
+  ///
+  /// Threads  Any. RT: one store.
+  void rest(rt::Timestamp now);
   /// Until so many moments are ready, or drawing has ended. For tests and tools.
   void waitFor(std::uint32_t moments) const;
 

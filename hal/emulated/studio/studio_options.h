@@ -13,10 +13,10 @@ struct StudioOptions {
   SizePx size{1280, 1024};
   std::uint64_t seed = 1;
   double play_s = 24;         ///< length of the scene, which then begins anew
-  double first_play_s = 3;    ///< enough to begin with; the rest is drawn meanwhile
+  double first_play_s = 3;    ///< enough to begin with
   double patience_s = 45;     ///< with less than that, if drawing it takes so long
   bool depth_sensor = false;  ///< draw what it sees, too
-  bool grow = true;           ///< go on drawing while playing
+  bool grow = true;           ///< go on drawing while no camera sends
   /// Draw these moments alone, in this order, and keep none of them: for stills. Empty: the play.
   std::vector<std::uint32_t> only;
   std::filesystem::path cache;  ///< folder of all scenes; empty: none

@@ -91,6 +91,7 @@ void StudioScene::onTrigger(std::uint64_t trigger, rt::Timestamp edge) {
 }
 
 gvsp::Picture StudioScene::expose(std::uint32_t camera, std::uint64_t trigger, std::uint32_t slot) {
+  play_->rest(rt::now());
   Slot& s = slots_[camera][slot];
   const std::uint32_t moment = momentOf(trigger);
   const std::uint32_t variant = moment % kVariants;

@@ -31,6 +31,9 @@ struct Arguments {
   int tile_px = 512;
 };
 
+/// For as long as it takes, as no emulator with cameras waiting for it would.
+constexpr double kPatience_s = 1e6;
+
 int fail(const std::string& message) {
   std::fprintf(stderr, "kagami-studio: %s\n", message.c_str());
   return 1;
@@ -52,6 +55,21 @@ std::expected<std::unique_ptr<Play>, std::string> open(Arguments& a) {
   if (a.studio.cache.empty()) a.studio.cache = usualCache();
   ProgressBar bar;
   return Play::begin(a.studio, [&bar](double share, const char* what) { bar.show(share, what); });
+}
+
+/// The whole play into the cache.
+int drawPlay(Arguments& a) {
+  if (a.studio.cache.empty()) a.studio.cache = usualCache();
+  a.studio.first_play_s = a.studio.play_s;
+  a.studio.patience_s = kPatience_s;
+  ProgressBar bar;
+  const auto play =
+      Play::begin(a.studio, [&bar](double share, const char* what) { bar.show(share, what); });
+  if (!play) return fail(play.error());
+  const double drawn_s = (*play)->readyCount() / kMoments_hz;
+  std::printf("%.1f of %.1f s of the play are drawn: %s\n", drawn_s,
+              (*play)->momentCount() / kMoments_hz, a.studio.cache.c_str());
+  return (*play)->readyCount() == (*play)->momentCount() ? 0 : 1;
 }
 
 int makeSheet(Arguments& a) {
@@ -110,11 +128,14 @@ int main(int argc, char** argv) {
   app.add_option("--cache", a.studio.cache,
                  "folder that keeps the empty hall; default: kagami/studio in the user's cache");
   app.add_option("--camera", a.camera, "from 1")->capture_default_str();
-  app.add_option("--out", a.out, "PNG or JPEG file")->required();
+  app.add_option("--out", a.out, "PNG or JPEG file, for all but draw");
   app.add_option("--columns", a.columns)->capture_default_str()->check(CLI::Range(1, 50));
   app.add_option("--tile", a.tile_px, "width of one picture of the sheet")
       ->capture_default_str()
       ->check(CLI::Range(16, 4096));
+  app.add_flag("--depth-sensor", a.studio.depth_sensor, "what it sees, too, for draw");
+  const CLI::App* draw =
+      app.add_subcommand("draw", "the whole play into the cache: minutes, once")->fallthrough();
   CLI::App* sheet = app.add_subcommand("sheet", "one moment in all cameras")->fallthrough();
   CLI::App* view = app.add_subcommand("view", "one moment in one camera")->fallthrough();
   CLI::App* depth = app.add_subcommand("depth", "one camera's distances in colours")->fallthrough();
@@ -122,6 +143,8 @@ int main(int argc, char** argv) {
       app.add_subcommand("sensor", "what the depth sensor delivers: distances beside colour")
           ->fallthrough();
   CLI11_PARSE(app, argc, argv);
+  if (*draw) return drawPlay(a);
+  if (a.out.empty()) return fail("--out is missing: where the picture goes");
   if (*sheet) return makeSheet(a);
   if (*view) return makeView(a);
   if (*sensed) return makeSensed(a);

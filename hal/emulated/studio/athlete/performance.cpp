@@ -15,13 +15,14 @@ using Eigen::Vector3d;
 constexpr double kPass_s = 0.62;       // a partner's pass is in the air
 constexpr double kOutOfSight_s = 1.6;  // a thrown ball is shown
 
-/// A practice: the actions of one round in an order drawn by chance.
+/// A practice: the actions of one round in an order drawn by chance, a throw the first of them: of
+/// a scene that is still being drawn its beginning is shown.
 std::vector<Action> practice(Random& random) {
   using enum Action;
   std::vector<Action> round = {kThrow, kCatch, kThrow, kCatch, kSlowThrow};
   const std::array<Action, 4> between{kWalk, kStretch, kAbortedThrow, kRun};
   for (const Action action : between) {
-    const auto at = static_cast<std::ptrdiff_t>(random.next() % (round.size() + 1));
+    const auto at = static_cast<std::ptrdiff_t>(1 + random.next() % round.size());
     round.insert(round.begin() + at, action);
   }
   return round;
@@ -159,7 +160,9 @@ Performance::Performance(std::uint64_t seed, const PerformanceOptions& options)
     for (auto& corner : way) corner /= scale;
     composer.travel(way, run);
   };
-  composer.stand(1.2);
+  // Who only practises comes with the ball in hand.
+  if (options.actions.empty() && options.ball_radius_m > 0) composer.takeBall();
+  composer.stand(0.5);
   std::vector<Action> next;
   while (composer.now() < options.least_duration_s) {
     if (next.empty()) {
