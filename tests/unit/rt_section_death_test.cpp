@@ -27,8 +27,21 @@ void expectAbort(const Forbidden& forbidden, const std::string& call) {
 }
 
 TEST(RtSectionDeathTest, AbortsOnEveryWayToAllocate) {
-  expectAbort([] { const auto p = std::make_unique<std::array<volatile int, 9>>(); }, "malloc");
-  expectAbort([] { const std::vector<std::string> strings(3, std::string(100, 'x')); }, "malloc");
+  // What is stored in a volatile may be looked at, so no optimiser leaves the allocation out.
+  expectAbort(
+      [] {
+        const auto p = std::make_unique<std::array<int, 9>>();
+        const void* volatile kept = p.get();
+        (void)kept;
+      },
+      "malloc");
+  expectAbort(
+      [] {
+        const std::vector<std::string> strings(3, std::string(100, 'x'));
+        const void* volatile kept = strings.data();
+        (void)kept;
+      },
+      "malloc");
   expectAbort(
       [] {
         void* volatile p = std::malloc(1);
