@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -72,6 +73,22 @@ TEST(Studio, GivesTheSamePixelsForTheSameSeed) {
   ASSERT_EQ(first.size(), 16u);
   EXPECT_TRUE(same(first, draw(small(7))));
   EXPECT_FALSE(same(first, draw(small(8))));
+}
+
+TEST(Studio, DrawsOnOnlyWhileNoCameraSends) {
+  StudioOptions options = small(7);
+  options.play_s = 2;
+  const auto play = Play::begin(options, quiet);
+  ASSERT_TRUE(play) << play.error();
+  (*play)->rest(rt::now() + std::chrono::hours(1));
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // what was begun is finished
+  const std::uint32_t drawn = (*play)->readyCount();
+  EXPECT_LT(drawn, (*play)->momentCount());
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_EQ((*play)->readyCount(), drawn);
+  (*play)->rest({});
+  (*play)->waitFor((*play)->momentCount());
+  EXPECT_EQ((*play)->readyCount(), (*play)->momentCount());
 }
 
 TEST(Studio, GivesTheSamePixelsFromItsCacheEvenAfterDamage) {

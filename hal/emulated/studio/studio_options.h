@@ -14,7 +14,7 @@ struct StudioOptions {
   std::uint64_t seed = 1;
   double play_s = 24;         ///< length of the scene, which then begins anew
   double first_play_s = 3;    ///< enough to begin with
-  double patience_s = 45;     ///< with less than that, if drawing it takes so long
+  double patience_s = 50;     ///< with less than that, if drawing it takes so long
   bool depth_sensor = false;  ///< draw what it sees, too
   bool grow = true;           ///< go on drawing while no camera sends
   /// Draw these moments alone, in this order, and keep none of them: for stills. Empty: the play.
