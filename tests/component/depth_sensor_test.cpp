@@ -294,6 +294,7 @@ Played playAll(hal::DepthSensor& sensor) {
     played.depth_mm.emplace_back(frame->depth_mm.begin(), frame->depth_mm.end());
     played.colour_rgb.emplace_back(frame->colour_rgb.begin(), frame->colour_rgb.end());
   }
+  EXPECT_EQ(sensor.status().state, DepthState::kEnded) << sensor.status().message;
   return played;
 }
 
