@@ -49,22 +49,24 @@ std::uint32_t momentOf(const Arguments& a) {
   return static_cast<std::uint32_t>(std::lround(a.second * kMoments_hz));
 }
 
-std::expected<std::unique_ptr<Play>, std::string> open(Arguments& a) {
-  a.studio.play_s = std::max(a.studio.play_s, a.second + 0.1);
-  a.studio.only = {momentOf(a)};
+std::expected<std::unique_ptr<Play>, std::string> begin(Arguments& a) {
   if (a.studio.cache.empty()) a.studio.cache = usualCache();
   ProgressBar bar;
   return Play::begin(a.studio, [&bar](double share, const char* what) { bar.show(share, what); });
 }
 
+/// The one moment that is looked at.
+std::expected<std::unique_ptr<Play>, std::string> open(Arguments& a) {
+  a.studio.play_s = std::max(a.studio.play_s, a.second + 0.1);
+  a.studio.only = {momentOf(a)};
+  return begin(a);
+}
+
 /// The whole play into the cache.
 int drawPlay(Arguments& a) {
-  if (a.studio.cache.empty()) a.studio.cache = usualCache();
   a.studio.first_play_s = a.studio.play_s;
   a.studio.patience_s = kPatience_s;
-  ProgressBar bar;
-  const auto play =
-      Play::begin(a.studio, [&bar](double share, const char* what) { bar.show(share, what); });
+  const auto play = begin(a);
   if (!play) return fail(play.error());
   const double drawn_s = (*play)->readyCount() / kMoments_hz;
   std::printf("%.1f of %.1f s of the play are drawn: %s\n", drawn_s,

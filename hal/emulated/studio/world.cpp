@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kAthleteCells = 1.5;  // the cameras are near: polygons of two pixels
+constexpr double kAthleteCells = 1.5;  // the cameras are near: polygons of two to three pixels
 constexpr double kOthersCells = 2.0;
 constexpr double kShadowCells = 3.2;
 
