@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstring>
 #include <thread>
 #include <utility>
 
@@ -62,8 +63,10 @@ class Slots {
     *free = true;
     const auto slot = static_cast<std::uint32_t>(free - lent_.begin());
     std::byte* at = memory_ + slot * slot_bytes_;
-    at = std::ranges::copy(std::as_bytes(pair.depth_mm), at).out;
-    std::ranges::copy(std::as_bytes(pair.colour_rgb), at);
+    for (const auto bytes : {std::as_bytes(pair.depth_mm), std::as_bytes(pair.colour_rgb)}) {
+      if (!bytes.empty()) std::memcpy(at, bytes.data(), bytes.size());
+      at += bytes.size();
+    }
     return slot;
   }
 

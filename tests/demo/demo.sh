@@ -382,15 +382,17 @@ run_stamp() {  # FOLDER
   [ -n "$interactive" ] || run_full_hd "$1"
 }
 
-# What was drawn stays in the user's cache, so only the first run waits for it; while it plays, the
-# emulator draws the rest with what the processors have left over.
+# What was drawn stays in the user's cache, so only the first run waits for it. The emulator draws on
+# when no camera sends; kagami-studio draw makes the whole play at once.
 run_studio() {  # FOLDER
   say 'studio: the first time the hall is drawn, up to a minute'
   usual_patience=$emulator_patience
   emulator_patience=3000
+  zoom=1.4  # 5:4 pictures: the hall fills the width of the screen
   run_scene studio "$1" "$fps" --scene studio --cameras "$cameras" --size "$size" \
     --rig-out "$1/run/rig.toml" --studio-truth "$1/truth"
   emulator_patience=$usual_patience
+  zoom=1.0
   sensor_of_run=
   bus=none
 }

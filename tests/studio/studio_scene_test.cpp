@@ -121,7 +121,8 @@ TEST(Studio, ShowsEachTriggerItsMomentWhicheverSlotItGoesTo) {
   std::uint32_t slot = 0;
   for (const std::uint64_t trigger : {1U, 2U, 3U, 4U, 7U, 8U, 9U, 10U, 18U, 23U, 24U}) {
     const auto picture = (*scene)->expose(1, trigger, slot++ % emulator::kFrameHistory);
-    const cv::Mat shown(256, 320, CV_8U, const_cast<std::uint8_t*>(picture.pieces[0].data()));
+    cv::Mat shown(256, 320, CV_8U);
+    picture.copyTo({shown.data, shown.total()}, 0);
     const auto moment = static_cast<std::uint32_t>((trigger - 1) % 8);
     EXPECT_EQ(cv::countNonZero(shown != rawPicture(play, 1, moment)), 0) << "trigger " << trigger;
   }

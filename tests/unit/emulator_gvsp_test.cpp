@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -110,6 +111,32 @@ class CountingScene final : public Scene {
  private:
   std::array<std::uint8_t, 16> pixels_ = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 };
+
+/// The counting scene with pixels 2 to 6 and 12 replaced by 102 to 106 and 112.
+gvsp::Picture overlaid(CountingScene& scene) {
+  static constexpr std::array<PixelRun, 2> kRuns = {PixelRun{2, 5, 0}, PixelRun{12, 1, 5}};
+  static constexpr std::array<std::uint8_t, 6> kPixels = {102, 103, 104, 105, 106, 112};
+  gvsp::Picture picture = scene.expose(0, 1, 0);
+  picture.overlay = {.runs = kRuns, .pixels = kPixels};
+  return picture;
+}
+
+TEST(Overlay, ReplacesWhatAPartOfThePictureHasOfIt) {
+  CountingScene scene;
+  const gvsp::Picture picture = overlaid(scene);
+  const std::vector<std::uint8_t> whole = {0, 1, 102, 103, 104, 105, 106, 7,
+                                           8, 9, 10,  11,  112, 13,  14,  15};
+  for (std::size_t first = 0; first < whole.size(); ++first) {
+    for (std::size_t end = first + 1; end <= whole.size(); ++end) {
+      std::vector<std::uint8_t> part(end - first);
+      picture.copyTo(part, first);
+      const std::vector<std::uint8_t> wanted(&whole[first], &whole[first] + part.size());
+      EXPECT_EQ(part, wanted) << first << " to " << end;
+      const bool replaced = std::ranges::any_of(part, [](std::uint8_t v) { return v > 100; });
+      EXPECT_EQ(picture.overlay.touches(first, part.size()), replaced) << first << " to " << end;
+    }
+  }
+}
 
 TEST(FrameSource, PassesTheWholeSensorOnWithoutACopy) {
   CountingScene scene;

@@ -131,7 +131,7 @@ TEST_F(StudioCache, SaysThatTheDiskIsFull) {
 }
 
 std::vector<std::vector<Patch>> someMoments() {
-  Patch patch{.runs = {{3, 2}, {10, 3}}, .pixels = {1, 2, 3, 4, 5}};
+  Patch patch{.runs = {{3, 2, 0}, {10, 3, 2}}, .pixels = {1, 2, 3, 4, 5}};
   return {{patch, Patch{}}, {Patch{}, patch}};
 }
 
@@ -154,16 +154,28 @@ TEST(StudioMoments, AreRefusedWhenTheyAreOthers) {
   EXPECT_FALSE(emulator::studio::readMoments(bytes, 2, 2, {8, 4})) << "cut short";
 }
 
-TEST(StudioPatch, GoesIntoAPictureAndOutAgain) {
-  const Patch patch = someMoments()[0][0];
-  const std::vector<std::uint8_t> original(32, 9);
-  std::vector<std::uint8_t> picture = original;
-  patch.putInto(picture);
-  EXPECT_EQ(picture[3], 1);
-  EXPECT_EQ(picture[12], 5);
-  EXPECT_EQ(picture[5], 9);
-  patch.takeOutOf(picture, original);
-  EXPECT_EQ(picture, original);
+TEST(StudioMoments, AreRefusedWhenRunsOverlapOrPointElsewhere) {
+  for (const std::vector<emulator::PixelRun>& runs :
+       {std::vector<emulator::PixelRun>{{3, 3, 0}, {5, 2, 3}}, {{3, 3, 0}, {10, 2, 2}}}) {
+    const std::vector<std::vector<Patch>> moments = {{{.runs = runs, .pixels = {1, 2, 3, 4, 5}}}};
+    EXPECT_FALSE(
+        emulator::studio::readMoments(emulator::studio::writeMoments(moments), 1, 1, {8, 4}));
+  }
+}
+
+TEST(StudioPatch, CountsItsRunsAsTheyAreMade) {
+  Patch patch;
+  emulator::studio::RunMaker maker(patch.runs);
+  maker.beginRow();
+  EXPECT_EQ(maker.add(100), 0u);
+  EXPECT_EQ(maker.add(103), 2u) << "two pixels between them belong to the run";
+  EXPECT_EQ(maker.add(150), 0u);
+  maker.beginRow();
+  EXPECT_EQ(maker.add(151), 0u) << "another row";
+  ASSERT_EQ(patch.runs.size(), 3u);
+  EXPECT_TRUE(emulator::studio::fit(patch.runs, 152, 6));
+  EXPECT_FALSE(emulator::studio::fit(patch.runs, 151, 6));
+  EXPECT_FALSE(emulator::studio::fit(patch.runs, 152, 7));
 }
 
 TEST(StudioProgress, FillsItsBar) {

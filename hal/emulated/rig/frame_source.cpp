@@ -22,11 +22,7 @@ gvsp::Picture FrameSource::expose(std::uint64_t trigger, std::uint32_t slot) {
   const gvsp::Picture whole = scene_.expose(camera_, trigger, slot);
   if (passesThrough()) return whole;
 
-  std::uint8_t* to = sensor_.data();
-  for (const auto& piece : whole.pieces) {
-    if (!piece.empty()) std::memcpy(to, piece.data(), piece.size());
-    to += piece.size();
-  }
+  whole.copyTo(sensor_, 0);
   std::uint8_t* out = slots_[slot].data();
   const std::size_t stride = region_.sensor.width;
   for (std::uint32_t y = 0; y < region_.size.height; ++y) {
@@ -47,7 +43,7 @@ gvsp::Picture FrameSource::expose(std::uint64_t trigger, std::uint32_t slot) {
     }
     out += region_.size.width;
   }
-  return {{slots_[slot], {}, {}}};
+  return {.pieces = {slots_[slot]}, .overlay = {}};
 }
 
 }  // namespace emulator

@@ -1,5 +1,8 @@
 #include "hal/emulated/rig/gvsp.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "hal/emulated/rig/bytes.h"
 #include "hal/emulated/rig/gvcp.h"
 
@@ -17,6 +20,19 @@ void storeHeader(std::uint8_t* p, gvcp::Status status, std::uint16_t block_id, F
 }
 
 }  // namespace
+
+void Picture::copyTo(std::span<std::uint8_t> part, std::size_t first) const {
+  std::size_t skip = first;
+  std::span<std::uint8_t> to = part;
+  for (const auto& piece : pieces) {
+    const auto rest = piece.subspan(std::min(skip, piece.size()));
+    const auto taken = rest.first(std::min(rest.size(), to.size()));
+    if (!taken.empty()) std::memcpy(to.data(), taken.data(), taken.size());
+    to = to.subspan(taken.size());
+    skip -= std::min(skip, piece.size());
+  }
+  overlay.putInto(part, first);
+}
 
 Leader encodeLeader(const Frame& frame) {
   Leader bytes{};

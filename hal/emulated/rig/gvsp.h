@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "hal/emulated/rig/overlay.h"
+
 /// GigE Vision stream protocol: how one frame becomes packets. Pure.
 namespace emulator::gvsp {
 
@@ -16,14 +18,18 @@ inline constexpr std::size_t kTrailerBytes = kHeaderBytes + 8;
 /// A packet size counts the IP datagram; this much of it is IP, UDP and GVSP header.
 inline constexpr std::uint32_t kPacketOverheadBytes = 20 + 8 + 8;
 
-/// The pixels of one frame in up to three pieces, one after the other.
+/// The pixels of one frame in up to three pieces, one after the other, and what replaces some of
+/// them.
 /// Memory   Borrowed: the scene or the camera's frame store owns the bytes.
 struct Picture {
   std::array<std::span<const std::uint8_t>, 3> pieces;
+  Overlay overlay;
 
   [[nodiscard]] std::size_t bytes() const {
     return pieces[0].size() + pieces[1].size() + pieces[2].size();
   }
+  /// Writes the pixels from @p first on, as they are seen.
+  void copyTo(std::span<std::uint8_t> part, std::size_t first) const;
 };
 
 /// One frame as it goes out: packet 0 is the leader, then the payload, last the trailer.

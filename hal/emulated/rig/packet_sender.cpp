@@ -18,6 +18,9 @@ constexpr std::uint32_t kMaxDatagramBytes = 65'000;
 constexpr std::size_t kMaxMessages = 64;
 constexpr std::size_t kMaxPackets = 256;
 constexpr std::size_t kPiecesPerPacket = 4;  // header, and a payload in up to three pieces
+/// Payloads of which an overlay replaces a part are put together here, two messages of them: that
+/// little stays in the processor's nearest caches.
+constexpr std::size_t kComposedBytes = 2 * kMaxDatagramBytes;
 
 /// The messages of one sendmmsg call under construction.
 class Batch {
@@ -25,7 +28,8 @@ class Batch {
   explicit Batch(const sockaddr_in& to) : to_(to) {}
 
   [[nodiscard]] bool isFull() const {
-    return messages_ == kMaxMessages || packets_ + kMaxSegments > kMaxPackets;
+    return messages_ == kMaxMessages || packets_ + kMaxSegments > kMaxPackets ||
+           composed_bytes_ + kMaxDatagramBytes > kComposedBytes;
   }
   [[nodiscard]] std::size_t messages() const { return messages_; }
   [[nodiscard]] std::uint32_t packetsOf(std::size_t message) const { return counts_[message]; }
@@ -92,6 +96,13 @@ class Batch {
   void addPayload(const gvsp::Frame& frame, std::size_t offset) {
     std::size_t left =
         std::min<std::size_t>(frame.payload_per_packet, frame.picture.bytes() - offset);
+    if (frame.picture.overlay.touches(offset, left)) {
+      const auto payload = std::span(composed_).subspan(composed_bytes_, left);
+      composed_bytes_ += left;
+      frame.picture.copyTo(payload, offset);
+      addPiece(payload.data(), payload.size());
+      return;
+    }
     for (const auto& piece : frame.picture.pieces) {
       if (offset >= piece.size()) {
         offset -= piece.size();
@@ -115,6 +126,8 @@ class Batch {
   std::array<Control, kMaxMessages> controls_;
   std::array<iovec, kMaxPackets * kPiecesPerPacket> pieces_;
   std::array<gvsp::Leader, kMaxPackets> headers_bytes_;  // a leader is the longest header
+  std::size_t composed_bytes_ = 0;
+  std::array<std::uint8_t, kComposedBytes> composed_;
 };
 
 /// As the path's MTU counts it, IP header and all.

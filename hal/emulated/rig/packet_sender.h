@@ -10,7 +10,8 @@
 
 namespace emulator {
 
-/// Puts runs of one frame's packets on a UDP socket: few system calls, no copy of ours.
+/// Puts runs of one frame's packets on a UDP socket: few system calls, and no copy of ours
+/// but of payloads that an overlay replaces a part of.
 ///
 /// Equal packets leave as one super-packet that the kernel cuts (UDP_SEGMENT), where the
 /// kernel can; else one message each, as on a wire that reorders or doubles packets. Never skips

@@ -51,7 +51,7 @@ float shareAt(const FloorShade& shade, const cv::Point2f& at) {
 void RgbdPatch::putInto(const DepthRingWriter::Canvas& canvas) const {
   const std::uint16_t* depth = depth_steps.data();
   const std::uint8_t* colour = colour_rgb.data();
-  for (const Run& run : runs) {
+  for (const PixelRun& run : runs) {
     float* to = &canvas.depth_m[run.start];
     for (std::uint32_t i = 0; i < run.length; ++i) to[i] = static_cast<float>(depth[i]) * kStep_m;
     std::memcpy(&canvas.colour_rgb[3 * std::size_t{run.start}], colour,

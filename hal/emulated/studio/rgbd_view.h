@@ -21,7 +21,7 @@ struct RgbdPatch {
   /// Depth is kept in these steps, far finer than any sensor's, up to 16 m.
   static constexpr float kStep_m = 0.25e-3f;
 
-  std::vector<Run> runs;
+  std::vector<PixelRun> runs;
   std::vector<std::uint16_t> depth_steps;  ///< of all runs, one after the other; 0: farther
   std::vector<std::uint8_t> colour_rgb;    ///< the same, sRGB
 

@@ -20,7 +20,7 @@ struct StudioOptions {
   /// Draw these moments alone, in this order, and keep none of them: for stills. Empty: the play.
   std::vector<std::uint32_t> only;
   std::filesystem::path cache;  ///< folder of all scenes; empty: none
-  double cache_gib = 4;         ///< of all scenes together
+  double cache_gib = 6;         ///< of all scenes together
 };
 
 }  // namespace emulator::studio

@@ -14,8 +14,8 @@ std::expected<std::unique_ptr<StudioScene>, std::string> StudioScene::make(
     const StudioOptions& options, const Play::Progress& progress) {
   auto play = Play::begin(options, progress);
   if (!play) return std::unexpected(play.error());
-  const std::size_t bytes = std::size_t{options.cameras} * (kVariants + kFrameHistory) *
-                            options.size.width * options.size.height;
+  const std::size_t bytes =
+      std::size_t{options.cameras} * kVariants * options.size.width * options.size.height;
   auto memory = rt::LockedArena::create(bytes);
   if (!memory) {
     return std::unexpected("the studio's pictures need " + std::to_string(bytes / 1'000'000) +
@@ -28,8 +28,7 @@ StudioScene::StudioScene(std::unique_ptr<Play> play, rt::LockedArena memory)
     : play_(std::move(play)),
       size_(play_->rig().cameras.front().model.image_size),
       memory_(std::move(memory)),
-      backgrounds_(cameraCount()),
-      slots_(cameraCount()) {
+      backgrounds_(cameraCount()) {
   const std::span<std::byte> bytes = memory_.bytes();
   std::span rest(reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size());
   const auto cut = [&] {
@@ -41,13 +40,6 @@ StudioScene::StudioScene(std::unique_ptr<Play> play, rt::LockedArena memory)
     for (std::uint32_t variant = 0; variant < kVariants; ++variant) {
       backgrounds_[camera][variant] = cut();
       std::ranges::copy(play_->background(camera, variant), backgrounds_[camera][variant].begin());
-    }
-    for (std::uint32_t slot = 0; slot < kFrameHistory; ++slot) {
-      // The variant that the slot will meet first, if no trigger is missed.
-      Slot& s = slots_[camera][slot];
-      s.picture = cut();
-      s.variant = slot % kVariants;
-      std::ranges::copy(backgrounds_[camera][s.variant], s.picture.begin());
     }
   }
   rounds_.reserve(kRemembered);
@@ -90,20 +82,12 @@ void StudioScene::onTrigger(std::uint64_t trigger, rt::Timestamp edge) {
   last_trigger_ = trigger;
 }
 
-gvsp::Picture StudioScene::expose(std::uint32_t camera, std::uint64_t trigger, std::uint32_t slot) {
+gvsp::Picture StudioScene::expose(std::uint32_t camera, std::uint64_t trigger,
+                                  std::uint32_t /*slot*/) {
   play_->rest(rt::now());
-  Slot& s = slots_[camera][slot];
   const std::uint32_t moment = momentOf(trigger);
-  const std::uint32_t variant = moment % kVariants;
-  if (s.variant != variant) {  // a trigger was missed: rare enough to copy everything
-    std::ranges::copy(backgrounds_[camera][variant], s.picture.begin());
-    s.variant = variant;
-  } else if (s.patch != nullptr) {
-    s.patch->takeOutOf(s.picture, backgrounds_[camera][variant]);
-  }
-  s.patch = &play_->patch(moment, camera);
-  s.patch->putInto(s.picture);
-  return {{s.picture, {}, {}}};
+  return {.pieces = {backgrounds_[camera][moment % kVariants]},
+          .overlay = play_->patch(moment, camera).overlay()};
 }
 
 }  // namespace emulator::studio

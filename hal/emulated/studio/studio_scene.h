@@ -18,7 +18,7 @@ namespace emulator::studio {
 /// An athlete at practice in a hall, drawn in advance; trigger 1 shows the first moment, and when
 /// the moments that are ready have passed it begins anew.
 ///
-/// Memory   Eight pictures per camera, beside what Play holds.
+/// Memory   Four pictures per camera, beside what Play holds.
 class StudioScene final : public Scene {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<StudioScene>, std::string> make(
@@ -44,11 +44,6 @@ class StudioScene final : public Scene {
   [[nodiscard]] const std::vector<Round>& rounds() const { return rounds_; }
 
  private:
-  struct Slot {
-    std::span<std::uint8_t> picture;
-    std::uint32_t variant = UINT32_MAX;
-    const Patch* patch = nullptr;
-  };
   StudioScene(std::unique_ptr<Play> play, rt::LockedArena memory);
   [[nodiscard]] std::uint32_t momentOf(std::uint64_t trigger);
 
@@ -56,7 +51,6 @@ class StudioScene final : public Scene {
   SizePx size_;
   rt::LockedArena memory_;
   std::vector<std::array<std::span<std::uint8_t>, 4>> backgrounds_;
-  std::vector<std::array<Slot, kFrameHistory>> slots_;
   std::vector<Round> rounds_;
   Round round_;
   rt::Timestamp last_edge_;
