@@ -1,7 +1,6 @@
 #include "hal/emulated/studio/people_renderer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 
@@ -21,130 +20,20 @@ constexpr std::array<float, 4> kShadowArea = {0, 1.0f, 7.5f, 7.0f};  // middle, 
 constexpr float kTallest_m = 2.9f;
 constexpr float kNear_m = 0.3f;
 constexpr float kFar_m = 30;
-/// A point that goes further than this across the picture is drawn more than once.
-constexpr double kStep_px = 2.2;
-constexpr int kMostSteps = 8;
 constexpr double kLensBlur_px = 0.62;
-
-struct RestVertex {
-  float rest[3];
-  float uv[2];
-  float material;
-};
 
 float value(double v) {
   return static_cast<float>(v);
 }
 
-/// A program of which only what the vertex shader gives is wanted.
-gl::Program makeCapture(const char* name, const std::string& vertex, const char* captured) {
-  gl::Program program = makeProgram(name, vertex, kNoFragment);
-  glTransformFeedbackVaryings(program.get(), 1, &captured, GL_INTERLEAVED_ATTRIBS);
-  glLinkProgram(program.get());
-  return program;
-}
-
-void capture(GLuint vertex_array, GLuint into, GLsizei vertices) {
-  glEnable(GL_RASTERIZER_DISCARD);
-  glBindVertexArray(vertex_array);
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, into);
-  glBeginTransformFeedback(GL_POINTS);
-  glDrawArrays(GL_POINTS, 0, vertices);
-  glEndTransformFeedback();
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-  glDisable(GL_RASTERIZER_DISCARD);
-}
-
-void attribute(GLuint index, GLint size, std::size_t stride, std::size_t offset) {
-  glEnableVertexAttribArray(index);
-  glVertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                        reinterpret_cast<const void*>(offset));
-}
-
 }  // namespace
-
-void PeopleRenderer::restAttributes(const Mesh& mesh) {
-  glBindBuffer(GL_ARRAY_BUFFER, mesh.rest.get());
-  attribute(3, 3, sizeof(RestVertex), offsetof(RestVertex, rest));
-  attribute(4, 2, sizeof(RestVertex), offsetof(RestVertex, uv));
-  attribute(5, 1, sizeof(RestVertex), offsetof(RestVertex, material));
-}
-
-PeopleRenderer::Mesh PeopleRenderer::upload(const Body& body) {
-  Mesh mesh{.draw = gl::makeVertexArray(),
-            .light = gl::makeVertexArray(),
-            .posed = gl::makeBuffer(),
-            .fallen = gl::makeBuffer(),
-            .rest = gl::makeBuffer(),
-            .paint = gl::makeBuffer(),
-            .indices = gl::makeBuffer(),
-            .count = static_cast<GLsizei>(body.triangles.size()),
-            .vertices = static_cast<GLsizei>(body.vertices.size())};
-  const std::size_t count = body.vertices.size();
-  const auto reserve = [&](const gl::Buffer& buffer, std::size_t vertex_bytes, GLenum use) {
-    glBindBuffer(GL_ARRAY_BUFFER, buffer.get());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * vertex_bytes), nullptr, use);
-  };
-  const auto posedAttributes = [&] {
-    glBindBuffer(GL_ARRAY_BUFFER, mesh.posed.get());
-    attribute(0, 3, sizeof(PosedMesh::Vertex), offsetof(PosedMesh::Vertex, opens));
-    attribute(1, 3, sizeof(PosedMesh::Vertex), offsetof(PosedMesh::Vertex, closes));
-    attribute(2, 3, sizeof(PosedMesh::Vertex), offsetof(PosedMesh::Vertex, normal));
-  };
-  reserve(mesh.posed, sizeof(PosedMesh::Vertex), GL_STREAM_DRAW);
-  glBindVertexArray(mesh.light.get());
-  posedAttributes();
-  glBindVertexArray(mesh.draw.get());
-  posedAttributes();
-  std::vector<RestVertex> rest;
-  rest.reserve(count);
-  for (const Vertex& v : body.vertices) {
-    rest.push_back({{v.position.x(), v.position.y(), v.position.z()},
-                    {v.uv.x(), v.uv.y()},
-                    static_cast<float>(v.material)});
-  }
-  glBindBuffer(GL_ARRAY_BUFFER, mesh.rest.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * sizeof(RestVertex)), rest.data(),
-               GL_STATIC_DRAW);
-  restAttributes(mesh);
-  reserve(mesh.fallen, 3 * sizeof(float), GL_STREAM_COPY);
-  attribute(6, 3, 3 * sizeof(float), 0);
-  reserve(mesh.paint, 4 * sizeof(float), GL_STATIC_COPY);
-  attribute(7, 4, 4 * sizeof(float), 0);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices.get());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(body.triangles.size() * sizeof(std::uint32_t)),
-               body.triangles.data(), GL_STATIC_DRAW);
-  glBindVertexArray(0);
-  return mesh;
-}
-
-void PeopleRenderer::setColours(const gl::Program& program, const Body& body) {
-  for (const AlbedoUniform& colour : albedoUniforms(body.shape)) {
-    const GLint at = uniform(program, colour.name);
-    if (colour.components == 3) {
-      glUniform3fv(at, 1, colour.value);
-    } else {
-      glUniform4fv(at, 1, colour.value);
-    }
-  }
-}
-
-void PeopleRenderer::paint(const Mesh& mesh, const Body& body) const {
-  const gl::VertexArray vertex_array = gl::makeVertexArray();
-  glBindVertexArray(vertex_array.get());
-  restAttributes(mesh);
-  glUseProgram(paint_program_.get());
-  setColours(paint_program_, body);
-  capture(vertex_array.get(), mesh.paint.get(), mesh.vertices);
-}
 
 PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::vector<Lamp>& lamps,
                                const LightProbes& probes, const cv::Mat& floor_light)
     : cast_(cast), lamps_(lamps), probes_(probes), no_vertices_(gl::makeVertexArray()) {
   for (const CastMember& member : cast) {
-    surfaces_.push_back(upload(member.surface));
-    shadows_.push_back(upload(member.shadow));
+    surfaces_.emplace_back(member.surface);
+    shadows_.emplace_back(member.shadow);
   }
   shadow_program_ = makeProgram("shadows", kShadowVertex, kShadowFragment);
   light_program_ =
@@ -180,7 +69,7 @@ PeopleRenderer::PeopleRenderer(const std::vector<CastMember>& cast, const std::v
   floor_framebuffer_ = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, floor_framebuffer_.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, floor_map_.get(), 0);
-  for (std::size_t i = 0; i < cast.size(); ++i) paint(surfaces_[i], cast[i].surface);
+  for (std::size_t i = 0; i < cast.size(); ++i) surfaces_[i].paint(paint_program_, cast[i].surface);
 }
 
 void PeopleRenderer::makeTargets(int width, int height) {
@@ -219,20 +108,14 @@ void PeopleRenderer::setMoment(const Moment& moment) {
 
 void PeopleRenderer::movePeople(const Moment& moment) {
   shown_.resize(moment.bodies.size());
-  const auto put = [](const Mesh& mesh, const PosedMesh& posed) {
-    glBindBuffer(GL_ARRAY_BUFFER, mesh.posed.get());
-    glBufferSubData(GL_ARRAY_BUFFER, 0,
-                    static_cast<GLsizeiptr>(posed.vertices.size() * sizeof(PosedMesh::Vertex)),
-                    posed.vertices.data());
-  };
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     const PosedBody& body = moment.bodies[i];
-    Shown& shown = shown_[i];
+    ShownBody& shown = shown_[i];
     shown.body = body.body;
     poseMesh(cast_[body.body].surface, body.opens, body.closes, shown.mesh);
     poseMesh(cast_[body.body].shadow, body.opens, body.closes, shown.shadow);
-    put(surfaces_[body.body], shown.mesh);
-    put(shadows_[body.body], shown.shadow);
+    surfaces_[body.body].pose(shown.mesh);
+    shadows_[body.body].pose(shown.shadow);
   }
 }
 
@@ -282,23 +165,18 @@ void PeopleRenderer::drawShadows(double /*second*/) {
     const Lamp& lamp = lamps_[i];
     glUniform3f(uniform(shadow_program_, "lamp"), lamp.centre.x(), lamp.centre.y(),
                 lamp.centre.z());
-    for (const Shown& shown : shown_) {
-      const Mesh& mesh = shadows_[shown.body];
-      glBindVertexArray(mesh.draw.get());
-      glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
-    }
+    for (const ShownBody& shown : shown_) shadows_[shown.body].draw();
   }
 }
 
 void PeopleRenderer::lightBodies(double second) {
   glUseProgram(light_program_.get());
   setLamps(light_program_, second);
-  for (const Shown& shown : shown_) {
+  for (const ShownBody& shown : shown_) {
     const Eigen::Vector3f centre = shown.mesh.bounds.center();
     const LightProbes::Cube cube = probes_.at(centre.head<2>());
     glUniform3fv(uniform(light_program_, "around"), 6, cube[0].data());
-    const Mesh& mesh = surfaces_[shown.body];
-    capture(mesh.light.get(), mesh.fallen.get(), mesh.vertices);
+    surfaces_[shown.body].light();
   }
 }
 
@@ -340,65 +218,12 @@ void PeopleRenderer::setCamera(const gl::Program& program, const StudioCamera& c
   glUniform3f(uniform(program, "eye"), eye.x(), eye.y(), eye.z());
 }
 
-/// Where people are in the picture: one rectangle each, those that overlap as one.
-std::vector<PeopleRenderer::Area> PeopleRenderer::areasOf(const StudioCamera& camera) const {
-  const cv::Rect picture(0, 0, static_cast<int>(camera.model.image_size.width),
-                         static_cast<int>(camera.model.image_size.height));
-  std::vector<Area> areas;
-  for (const Shown& shown : shown_) {
-    Eigen::AlignedBox2d box;
-    bool behind = false;
-    for (std::size_t i = 0; i < shown.mesh.vertices.size(); i += 5) {  // neighbours are near
-      for (const Eigen::Vector3f& p :
-           {shown.mesh.vertices[i].opens, shown.mesh.vertices[i].closes}) {
-        const Eigen::Vector3d q = p.cast<double>();
-        behind |= (camera.rotation().row(2) * (q - camera.centre()))(0) < kNear_m;
-        if (!behind) box.extend(camera.project(q));
-      }
-    }
-    if (behind) continue;
-    constexpr int kMargin = 6;
-    const cv::Rect rect =
-        cv::Rect(cv::Point(static_cast<int>(std::clamp(box.min().x(), -1e4, 1e4)) - kMargin,
-                           static_cast<int>(std::clamp(box.min().y(), -1e4, 1e4)) - kMargin),
-                 cv::Point(static_cast<int>(std::clamp(box.max().x(), -1e4, 1e4)) + kMargin,
-                           static_cast<int>(std::clamp(box.max().y(), -1e4, 1e4)) + kMargin)) &
-        picture;
-    if (!rect.empty()) areas.push_back({rect, {&shown}});
-  }
-  for (bool merged = true; merged;) {
-    merged = false;
-    for (std::size_t i = 0; i < areas.size() && !merged; ++i) {
-      for (std::size_t k = i + 1; k < areas.size() && !merged; ++k) {
-        if ((areas[i].rect & areas[k].rect).empty()) continue;
-        areas[i].rect |= areas[k].rect;
-        areas[i].people.insert(areas[i].people.end(), areas[k].people.begin(),
-                               areas[k].people.end());
-        areas.erase(areas.begin() + static_cast<std::ptrdiff_t>(k));
-        merged = true;
-      }
-    }
-  }
-  return areas;
-}
-
-/// How many instants of the exposure make its blur: no two more than kStep_px apart.
-int PeopleRenderer::stepsOf(const Area& area, const StudioCamera& camera) {
-  double way_px = 0;
-  for (const Shown* shown : area.people) {
-    const double distance =
-        std::max(0.5, (shown->mesh.bounds.center().cast<double>() - camera.centre()).norm() - 0.5);
-    way_px = std::max(way_px, shown->mesh.way_m * camera.model.focal_px[0] / distance);
-  }
-  return std::clamp(static_cast<int>(std::ceil(way_px / kStep_px)), 1, kMostSteps);
-}
-
 std::vector<PeoplePicture> PeopleRenderer::draw(std::size_t camera) {
   const View& view = views_[camera];
   std::vector<PeoplePicture> pictures;
-  for (const Area& area : areasOf(view.camera)) {
+  for (const PeopleArea& area : peopleAreas(view.camera, shown_, kNear_m)) {
     const cv::Rect& rect = area.rect;
-    const int steps = stepsOf(area, view.camera);
+    const int steps = blurSteps(area, view.camera);
     PeoplePicture picture{.area = rect, .roots = cv::Mat(rect.size(), CV_8UC4)};
     cv::Mat sum;
     if (steps > 1) sum = cv::Mat(rect.size(), CV_32FC4, cv::Scalar::all(0));
@@ -417,7 +242,7 @@ std::vector<PeoplePicture> PeopleRenderer::draw(std::size_t camera) {
   return pictures;
 }
 
-void PeopleRenderer::drawStep(const View& view, const Area& area, float instant) const {
+void PeopleRenderer::drawStep(const View& view, const PeopleArea& area, float instant) const {
   const SizePx size = view.camera.model.image_size;
   glBindFramebuffer(GL_FRAMEBUFFER, target_.get());
   glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
@@ -437,11 +262,9 @@ void PeopleRenderer::drawStep(const View& view, const Area& area, float instant)
   glUniform1i(uniform(body_program_, "behind"), 0);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, view.depth.get());
-  for (const Shown* shown : area.people) {
-    const Mesh& mesh = surfaces_[shown->body];
+  for (const ShownBody* shown : area.people) {
     setColours(body_program_, cast_[shown->body].surface);
-    glBindVertexArray(mesh.draw.get());
-    glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
+    surfaces_[shown->body].draw();
   }
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
@@ -468,11 +291,7 @@ cv::Mat PeopleRenderer::drawDepth(std::size_t camera) {
   glUseProgram(depth_program_.get());
   setCamera(depth_program_, view.camera);
   glUniform1f(uniform(depth_program_, "instant"), 0.5f);
-  for (const Shown& shown : shown_) {
-    const Mesh& mesh = surfaces_[shown.body];
-    glBindVertexArray(mesh.draw.get());
-    glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
-  }
+  for (const ShownBody& shown : shown_) surfaces_[shown.body].draw();
   cv::Mat people(height, width, CV_32F);
   glReadPixels(0, 0, width, height, GL_RED, GL_FLOAT, people.data);
   cv::Mat hall(height, width, CV_32F);

@@ -8,10 +8,11 @@
 
 #include "hal/emulated/studio/athlete/body.h"
 #include "hal/emulated/studio/backdrop.h"
+#include "hal/emulated/studio/body_mesh.h"
 #include "hal/emulated/studio/lamps.h"
 #include "hal/emulated/studio/light_bake.h"
 #include "hal/emulated/studio/moment.h"
-#include "hal/emulated/studio/posed_mesh.h"
+#include "hal/emulated/studio/people_areas.h"
 #include "hal/emulated/studio/studio_gl.h"
 
 namespace emulator::studio {
@@ -60,53 +61,25 @@ class PeopleRenderer {
   [[nodiscard]] cv::Mat drawDepth(std::size_t camera);
 
  private:
-  struct Mesh {
-    gl::VertexArray draw;
-    gl::VertexArray light;
-    gl::Buffer posed;
-    gl::Buffer fallen;
-    gl::Buffer rest;
-    gl::Buffer paint;
-    gl::Buffer indices;
-    GLsizei count = 0;
-    GLsizei vertices = 0;
-  };
   struct View {
     StudioCamera camera;
     gl::Texture depth;
   };
-  struct Shown {
-    std::size_t body = 0;
-    PosedMesh mesh;
-    PosedMesh shadow;
-  };
-  /// A rectangle of one camera's picture and all who are in it.
-  struct Area {
-    cv::Rect rect;
-    std::vector<const Shown*> people;
-  };
-
-  static void restAttributes(const Mesh& mesh);
-  static Mesh upload(const Body& body);
-  void paint(const Mesh& mesh, const Body& body) const;
   void drawShadows(double second);
   void lightBodies(double second);
   void shadeFloor(double second);
-  static void setColours(const gl::Program& program, const Body& body);
   void setLamps(const gl::Program& program, double second) const;
   void setCamera(const gl::Program& program, const StudioCamera& camera) const;
-  [[nodiscard]] std::vector<Area> areasOf(const StudioCamera& camera) const;
-  [[nodiscard]] static int stepsOf(const Area& area, const StudioCamera& camera);
-  void drawStep(const View& view, const Area& area, float instant) const;
+  void drawStep(const View& view, const PeopleArea& area, float instant) const;
   void makeTargets(int width, int height);
 
   const std::vector<CastMember>& cast_;
   const std::vector<Lamp>& lamps_;
   const LightProbes& probes_;
-  std::vector<Mesh> surfaces_;
-  std::vector<Mesh> shadows_;
+  std::vector<BodyMesh> surfaces_;
+  std::vector<BodyMesh> shadows_;
   std::vector<View> views_;
-  std::vector<Shown> shown_;
+  std::vector<ShownBody> shown_;
   FloorShade floor_shade_;
 
   gl::Program shadow_program_;
