@@ -9,6 +9,7 @@
 #include "hal/emulated/studio/athlete/body.h"
 #include "hal/emulated/studio/backdrop.h"
 #include "hal/emulated/studio/body_mesh.h"
+#include "hal/emulated/studio/floor_shade.h"
 #include "hal/emulated/studio/lamps.h"
 #include "hal/emulated/studio/light_bake.h"
 #include "hal/emulated/studio/moment.h"
@@ -28,16 +29,6 @@ struct PeoplePicture {
   cv::Rect area;
   cv::Mat roots;  ///< CV_8UC4: square roots of red, green, blue as in Backdrop::rgb, times
                   ///< coverage, then coverage; 255 is 1
-};
-
-/// How much of its light the floor keeps among the people, seen from above.
-struct FloorShade {
-  static constexpr int kColumns = 280;
-  static constexpr int kRows = 260;
-  static constexpr float kLowX_m = -7.0f;
-  static constexpr float kLowY_m = -5.5f;
-  static constexpr float kStep_m = 0.05f;
-  cv::Mat share;  ///< CV_32F, row 0 at kLowY_m; 1 where nobody is
 };
 
 /// Draws people: what all cameras share of a moment once (pose, shadows, light on every vertex),

@@ -32,7 +32,7 @@ namespace emulator::studio {
 namespace {
 
 /// To be raised whenever pictures of the same seed change: it tells old caches from new ones.
-constexpr int kPictures = 4;
+constexpr int kPictures = 5;
 constexpr std::uint32_t kBlock = 10;  ///< moments in one file of the cache
 constexpr unsigned kMostThreads = 8;
 constexpr std::uint64_t kUsualMomentBytes = 160'000;  // per camera

@@ -8,12 +8,12 @@
 #include <Eigen/Geometry>
 
 #include "hal/emulated/studio/bytes.h"
+#include "hal/emulated/studio/srgb.h"
 
 namespace emulator::studio {
 namespace {
 
 constexpr float kExposure = 1.14f;   // light 1 is a little more than full, as for the cameras
-constexpr float kFaintest = 0.988f;  // shade fainter than this is none
 constexpr float kNearer_m = 0.002f;  // than the hall: a person
 
 std::uint8_t shown(float light) {
@@ -21,8 +21,7 @@ std::uint8_t shown(float light) {
     std::array<std::uint8_t, 4096> values;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double v = static_cast<double>(i) / (values.size() - 1);
-      const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-      values[i] = static_cast<std::uint8_t>(std::lround(255 * s));
+      values[i] = static_cast<std::uint8_t>(std::lround(255 * srgb(v)));
     }
     return values;
   }();
@@ -33,17 +32,6 @@ std::uint8_t shown(float light) {
 std::uint16_t stepsOf(float depth_m) {
   const float steps = depth_m / RgbdPatch::kStep_m + 0.5f;
   return steps < 65536 ? static_cast<std::uint16_t>(steps) : std::uint16_t{0};
-}
-
-/// What the floor keeps of its light at a place among the map's cells.
-float shareAt(const FloorShade& shade, const cv::Point2f& at) {
-  const int x = static_cast<int>(at.x);
-  const int y = static_cast<int>(at.y);
-  const float u = at.x - static_cast<float>(x);
-  const float v = at.y - static_cast<float>(y);
-  const auto* above = shade.share.ptr<float>(y) + x;
-  const auto* below = shade.share.ptr<float>(y + 1) + x;
-  return (1 - v) * ((1 - u) * above[0] + u * above[1]) + v * ((1 - u) * below[0] + u * below[1]);
 }
 
 }  // namespace
@@ -124,11 +112,8 @@ void RgbdView::findFloor(const StudioCamera& camera) {
       const Eigen::Vector3d ray((x - m.centre_px[0]) / m.focal_px[0],
                                 (y - m.centre_px[1]) / m.focal_px[1], 1);
       const Eigen::Vector3d point = eye + to_rig * ray * depth_m_[i];
-      const double column = (point.x() - FloorShade::kLowX_m) / FloorShade::kStep_m - 0.5;
-      const double row = (point.y() - FloorShade::kLowY_m) / FloorShade::kStep_m - 0.5;
-      if (std::abs(point.z()) < 0.02 && column >= 0 && row >= 0 &&
-          column < FloorShade::kColumns - 1 && row < FloorShade::kRows - 1)
-        floor_[i] = cv::Point2f(static_cast<float>(column), static_cast<float>(row));
+      if (const auto cell = FloorShade::cellOf(point))
+        floor_[i] = cv::Point2f(static_cast<float>(cell->x()), static_cast<float>(cell->y()));
     }
   }
 }
@@ -166,9 +151,9 @@ RgbdPatch RgbdView::develop(const std::vector<PeoplePicture>& people, const Floo
       const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                      static_cast<std::size_t>(x);
       const cv::Vec4b& light = covers.at<cv::Vec4b>(y, x);
-      const float kept = floor_[i].x >= 0 ? shareAt(shade, floor_[i]) : 1;
+      const float kept = floor_[i].x >= 0 ? shade.at(floor_[i].x, floor_[i].y) : 1;
       const bool nearer = depth_m.at<float>(y, x) < depth_m_[i] - kNearer_m;
-      if (light[3] == 0 && kept >= kFaintest && !nearer) continue;
+      if (light[3] == 0 && kept >= FloorShade::kFaintest && !nearer) continue;
       for (std::uint32_t gap = runs.add(static_cast<std::uint32_t>(i)); gap > 0; --gap)
         put(i - gap, cv::Vec4b(0, 0, 0, 0), 1);
       put(i, light, kept);

@@ -20,7 +20,6 @@ constexpr float kSignalScale = 128;
 constexpr float kRippleScale = 400;
 constexpr float kFloorScale = 128;
 /// Shade fainter than this drowns in the noise.
-constexpr float kFaintest = 0.988f;
 
 /// Normal values to draw from: mean 0, deviation 1.
 const std::array<float, 65536>& normals() {
@@ -97,12 +96,9 @@ SensorView::SensorView(const StudioCamera& camera, std::uint32_t number, const B
         v = (dy - ty) / radial;
       }
       const Eigen::Vector3d point = eye + to_rig * Eigen::Vector3d(u, v, 1) * backdrop.depth_m[i];
-      const double column = (point.x() - FloorShade::kLowX_m) / FloorShade::kStep_m - 0.5;
-      const double row = (point.y() - FloorShade::kLowY_m) / FloorShade::kStep_m - 0.5;
-      if (std::abs(point.z()) < 0.02 && column >= 0 && row >= 0 &&
-          column < FloorShade::kColumns - 1 && row < FloorShade::kRows - 1) {
-        pixel.floor_x = static_cast<std::uint16_t>(column * kFloorScale);
-        pixel.floor_y = static_cast<std::uint16_t>(row * kFloorScale);
+      if (const auto cell = FloorShade::cellOf(point)) {
+        pixel.floor_x = static_cast<std::uint16_t>(cell->x() * kFloorScale);
+        pixel.floor_y = static_cast<std::uint16_t>(cell->y() * kFloorScale);
       }
     }
   }
@@ -151,7 +147,7 @@ std::vector<std::uint8_t> SensorView::background(std::uint32_t variant) const {
 
 /// The part of the picture in which the floor may be shaded.
 cv::Rect SensorView::shadedArea(const FloorShade& shade) const {
-  cv::Mat dark = shade.share < kFaintest;
+  cv::Mat dark = shade.share < FloorShade::kFaintest;
   const cv::Rect cells = cv::boundingRect(dark);
   if (cells.empty()) return {};
   Eigen::AlignedBox2d box;
@@ -180,13 +176,8 @@ Patch SensorView::develop(std::uint64_t moment, const std::vector<PeoplePicture>
   Patch patch;
   RunMaker runs(patch.runs);
   const auto share = [&](const Pixel& pixel) {
-    const int column = static_cast<int>(static_cast<float>(pixel.floor_x) / kFloorScale);
-    const int row = static_cast<int>(static_cast<float>(pixel.floor_y) / kFloorScale);
-    const float u = static_cast<float>(pixel.floor_x) / kFloorScale - static_cast<float>(column);
-    const float v = static_cast<float>(pixel.floor_y) / kFloorScale - static_cast<float>(row);
-    const auto* low = shade.share.ptr<float>(row) + column;
-    const auto* high = shade.share.ptr<float>(row + 1) + column;
-    return (low[0] * (1 - u) + low[1] * u) * (1 - v) + (high[0] * (1 - u) + high[1] * u) * v;
+    return shade.at(static_cast<float>(pixel.floor_x) / kFloorScale,
+                    static_cast<float>(pixel.floor_y) / kFloorScale);
   };
   for (int y = all.y; y < all.br().y; ++y) {
     RowNoise noise(number_, kVariants + moment, y);
@@ -216,7 +207,7 @@ Patch SensorView::develop(std::uint64_t moment, const std::vector<PeoplePicture>
       if (shaded_row && x >= shaded.x && x < shaded.br().x && pixel.floor_x != kNoFloor)
         kept = share(pixel);
       const bool covered = light != nullptr && (*light)[3] > 0;
-      if (!covered && kept >= kFaintest) continue;
+      if (!covered && kept >= FloorShade::kFaintest) continue;
       float signal = signalOf(pixel, variant) * kept;
       if (covered) {
         const std::size_t c = colourAt(x, y);

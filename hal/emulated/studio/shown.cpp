@@ -1,11 +1,11 @@
 #include "hal/emulated/studio/shown.h"
 
 #include <array>
-#include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
 #include "hal/emulated/studio/sensor_view.h"
+#include "hal/emulated/studio/srgb.h"
 
 namespace emulator::studio {
 
@@ -26,10 +26,8 @@ cv::Mat shownPicture(const Play& play, std::uint32_t camera, std::uint32_t momen
   for (int v = 0; v < 256; ++v) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double light = v / 255.0 * gains[2 - c];
-      const double shown =
-          light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
       curves.at<cv::Vec3b>(0, v)[static_cast<int>(c)] =
-          cv::saturate_cast<std::uint8_t>(255 * shown);
+          cv::saturate_cast<std::uint8_t>(255 * srgb(light));
     }
   }
   cv::LUT(bgr, curves, bgr);

@@ -222,40 +222,41 @@ void Composer::stretch() {
   const auto bothArms = [&](double when, const Vector3d& upper, const Vector3d& fore) {
     for (const Side side : kSides) arm(side).key(when, armTowards(upper, fore));
   };
-  // Arms up, lean to both sides, then fold forwards.
-  bothArms(t + 0.9, {0.93, 0.15, 0.30}, {0.85, 0.25, 0.50});
-  t += 1.8;
-  bothArms(t, {0.40, 0.10, 0.91}, {-0.15, 0.12, 0.98});
-  score_.trunk(t, {-0.06, 0, 0});
-  score_.pelvis(t, place_, 0.962);
-  for (const double side : {0.32, -0.32}) {
+  // As between two throws: a few seconds, one side.
+  const Side side = random_.unit() < 0.5 ? Side::kLeft : Side::kRight;
+  if (random_.unit() < 0.5) {
+    // Arms up, and lean over.
+    const double lean = side == Side::kLeft ? 0.32 : -0.32;
+    bothArms(t + 0.9, {0.93, 0.15, 0.30}, {0.85, 0.25, 0.50});
+    t += 1.8;
+    bothArms(t, {0.40, 0.10, 0.91}, {-0.15, 0.12, 0.98});
+    score_.trunk(t, {-0.06, 0, 0});
+    score_.pelvis(t, place_, 0.962);
     t += vary(1.3, 0.15);
-    score_.trunk(t, {-0.03, side, 0});
-    score_.pelvis(t, beside(place_, heading_, -0.10 * side, 0), 0.958);
+    score_.trunk(t, {-0.03, lean, 0});
+    score_.pelvis(t, beside(place_, heading_, -0.10 * lean, 0), 0.958);
     bothArms(t, {0.38, 0.10, 0.92}, {-0.15, 0.12, 0.98});
     t += 0.5;
-    score_.trunk(t, {-0.03, side * 1.05, 0});
-    score_.pelvis(t, beside(place_, heading_, -0.10 * side, 0), 0.958);
+    score_.trunk(t, {-0.03, lean * 1.05, 0});
+    score_.pelvis(t, beside(place_, heading_, -0.10 * lean, 0), 0.958);
     bothArms(t, {0.38, 0.10, 0.92}, {-0.15, 0.12, 0.98});
-  }
-  t += 1.2;
-  score_.trunk(t, {0, 0, 0});
-  bothArms(t, {0.93, 0.05, 0.20}, {0.90, 0.30, 0.20});
-  if (random_.unit() < 0.6) {
-    // Shoulder circles' last part: one arm across the chest, then the other.
-    for (const Side side : kSides) {
-      const Side other = side == Side::kRight ? Side::kLeft : Side::kRight;
-      t += 1.1;
-      arm(side).key(t, armTowards({-0.28, 0.95, 0.02}, {-0.50, 0.86, 0.02}));
-      arm(other).key(t, armTowards({0.20, 0.78, -0.45}, {-0.60, 0.35, 0.62}));
-      score_.trunk(t, {0.02, 0, side == Side::kRight ? 0.15 : -0.15});
-      t += 1.2;
-      arm(side).key(t, armTowards({-0.30, 0.95, 0.04}, {-0.52, 0.85, 0.03}));
-      arm(other).key(t, armTowards({0.20, 0.78, -0.45}, {-0.60, 0.33, 0.64}));
-      score_.trunk(t, {0.02, 0, side == Side::kRight ? 0.18 : -0.18});
-      t += 0.8;
-      bothArms(t, {0.35, 0.45, -0.80}, {0.15, 0.80, -0.40});
-    }
+    t += 1.2;
+    score_.trunk(t, {0, 0, 0});
+    bothArms(t, {0.93, 0.05, 0.20}, {0.90, 0.30, 0.20});
+  } else {
+    // One arm across the chest, drawn closer by the other.
+    const Side other = side == Side::kRight ? Side::kLeft : Side::kRight;
+    const double turn = side == Side::kRight ? 0.15 : -0.15;
+    t += 1.1;
+    arm(side).key(t, armTowards({-0.28, 0.95, 0.02}, {-0.50, 0.86, 0.02}));
+    arm(other).key(t, armTowards({0.20, 0.78, -0.45}, {-0.60, 0.35, 0.62}));
+    score_.trunk(t, {0.02, 0, turn});
+    t += 1.2;
+    arm(side).key(t, armTowards({-0.30, 0.95, 0.04}, {-0.52, 0.85, 0.03}));
+    arm(other).key(t, armTowards({0.20, 0.78, -0.45}, {-0.60, 0.33, 0.64}));
+    score_.trunk(t, {0.02, 0, 1.2 * turn});
+    t += 0.8;
+    bothArms(t, {0.35, 0.45, -0.80}, {0.15, 0.80, -0.40});
   }
   rest(t + 1.2);
   end(t + 1.2);

@@ -16,14 +16,20 @@ constexpr double kPass_s = 0.62;       // a partner's pass is in the air
 constexpr double kOutOfSight_s = 1.6;  // a thrown ball is shown
 
 /// A practice: the actions of one round in an order drawn by chance, a throw the first of them: of
-/// a scene that is still being drawn its beginning is shown.
+/// a scene that is still being drawn its beginning is shown. Nobody stretches with the ball in
+/// hand.
 std::vector<Action> practice(Random& random) {
   using enum Action;
   std::vector<Action> round = {kThrow, kCatch, kThrow, kCatch, kSlowThrow};
-  const std::array<Action, 4> between{kWalk, kStretch, kAbortedThrow, kRun};
-  for (const Action action : between) {
+  for (const Action action : {kWalk, kAbortedThrow, kRun}) {
     const auto at = static_cast<std::ptrdiff_t>(1 + random.next() % round.size());
     round.insert(round.begin() + at, action);
+  }
+  auto after = random.next() % 3;
+  for (auto at = round.begin(); at != round.end(); ++at) {
+    if ((*at != kThrow && *at != kSlowThrow) || after-- != 0) continue;
+    round.insert(at + 1, kStretch);
+    break;
   }
   return round;
 }
