@@ -387,12 +387,13 @@ run_stamp() {  # FOLDER
 run_studio() {  # FOLDER
   say 'studio: the first time the hall is drawn, up to a minute'
   usual_patience=$emulator_patience
+  usual_zoom=$zoom
   emulator_patience=3000
   zoom=1.4  # 5:4 pictures: the hall fills the width of the screen
   run_scene studio "$1" "$fps" --scene studio --cameras "$cameras" --size "$size" \
     --rig-out "$1/run/rig.toml" --studio-truth "$1/truth"
   emulator_patience=$usual_patience
-  zoom=1.0
+  zoom=$usual_zoom
   sensor_of_run=
   bus=none
 }

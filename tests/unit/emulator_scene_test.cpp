@@ -17,8 +17,8 @@ namespace {
 using namespace emulator;  // NOLINT(google-build-using-namespace)
 
 std::vector<std::uint8_t> joined(const gvsp::Picture& picture) {
-  std::vector<std::uint8_t> all;
-  for (const auto& piece : picture.pieces) all.insert(all.end(), piece.begin(), piece.end());
+  std::vector<std::uint8_t> all(picture.bytes());
+  picture.copyTo(all, 0);
   return all;
 }
 

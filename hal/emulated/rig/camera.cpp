@@ -25,11 +25,7 @@ rt::Nanoseconds fromMicroseconds(float us) {
 
 gvsp::Frame upperHalf(gvsp::Frame frame) {
   frame.height_px /= 2;
-  std::size_t left = frame.picture.bytes() / 2;
-  for (auto& piece : frame.picture.pieces) {
-    piece = piece.first(std::min(left, piece.size()));
-    left -= piece.size();
-  }
+  frame.picture.pieces = frame.picture.piecesOf(0, frame.picture.bytes() / 2);
   return frame;
 }
 

@@ -21,15 +21,22 @@ void storeHeader(std::uint8_t* p, gvcp::Status status, std::uint16_t block_id, F
 
 }  // namespace
 
+Picture::Pieces Picture::piecesOf(std::size_t first, std::size_t count) const {
+  Pieces parts;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto rest = pieces[i].subspan(std::min(first, pieces[i].size()));
+    parts[i] = rest.first(std::min(count, rest.size()));
+    first -= std::min(first, pieces[i].size());
+    count -= parts[i].size();
+  }
+  return parts;
+}
+
 void Picture::copyTo(std::span<std::uint8_t> part, std::size_t first) const {
-  std::size_t skip = first;
-  std::span<std::uint8_t> to = part;
-  for (const auto& piece : pieces) {
-    const auto rest = piece.subspan(std::min(skip, piece.size()));
-    const auto taken = rest.first(std::min(rest.size(), to.size()));
-    if (!taken.empty()) std::memcpy(to.data(), taken.data(), taken.size());
-    to = to.subspan(taken.size());
-    skip -= std::min(skip, piece.size());
+  std::uint8_t* to = part.data();
+  for (const auto& piece : piecesOf(first, part.size())) {
+    if (!piece.empty()) std::memcpy(to, piece.data(), piece.size());
+    to += piece.size();
   }
   overlay.putInto(part, first);
 }

@@ -22,12 +22,15 @@ inline constexpr std::uint32_t kPacketOverheadBytes = 20 + 8 + 8;
 /// them.
 /// Memory   Borrowed: the scene or the camera's frame store owns the bytes.
 struct Picture {
-  std::array<std::span<const std::uint8_t>, 3> pieces;
+  using Pieces = std::array<std::span<const std::uint8_t>, 3>;
+  Pieces pieces;
   Overlay overlay;
 
   [[nodiscard]] std::size_t bytes() const {
     return pieces[0].size() + pieces[1].size() + pieces[2].size();
   }
+  /// What the pieces have of @p count pixels from @p first on, without what replaces them.
+  [[nodiscard]] Pieces piecesOf(std::size_t first, std::size_t count) const;
   /// Writes the pixels from @p first on, as they are seen.
   void copyTo(std::span<std::uint8_t> part, std::size_t first) const;
 };

@@ -94,26 +94,17 @@ class Batch {
   }
 
   void addPayload(const gvsp::Frame& frame, std::size_t offset) {
-    std::size_t left =
+    const std::size_t bytes =
         std::min<std::size_t>(frame.payload_per_packet, frame.picture.bytes() - offset);
-    if (frame.picture.overlay.touches(offset, left)) {
-      const auto payload = std::span(composed_).subspan(composed_bytes_, left);
-      composed_bytes_ += left;
+    if (frame.picture.overlay.touches(offset, bytes)) {
+      const auto payload = std::span(composed_).subspan(composed_bytes_, bytes);
+      composed_bytes_ += bytes;
       frame.picture.copyTo(payload, offset);
       addPiece(payload.data(), payload.size());
       return;
     }
-    for (const auto& piece : frame.picture.pieces) {
-      if (offset >= piece.size()) {
-        offset -= piece.size();
-        continue;
-      }
-      const std::size_t count = std::min(left, piece.size() - offset);
-      addPiece(piece.data() + offset, count);
-      left -= count;
-      if (left == 0) return;
-      offset = 0;
-    }
+    for (const auto& piece : frame.picture.piecesOf(offset, bytes))
+      if (!piece.empty()) addPiece(piece.data(), piece.size());
   }
 
   sockaddr_in to_;

@@ -15,7 +15,7 @@ struct FloorShade {
   static constexpr float kLowX_m = -7.0f;
   static constexpr float kLowY_m = -5.5f;
   static constexpr float kStep_m = 0.05f;
-  /// Where more than this is left, there is no shade.
+  /// Where more than this is left, shade drowns in the noise and is none.
   static constexpr float kFaintest = 0.988f;
   cv::Mat share;  ///< CV_32F, row 0 at kLowY_m; 1 where nobody is
 

@@ -14,11 +14,11 @@ std::uint32_t RunMaker::add(std::uint32_t pixel) {
     const std::uint32_t gap = pixel - (last.start + last.length);
     if (gap < kShortGap) {
       last.length += gap + 1;
-      pixels_ += gap + 1;
       return gap;
     }
   }
-  runs_.push_back({.start = pixel, .length = 1, .from = pixels_++});
+  const std::uint32_t from = runs_.empty() ? 0 : runs_.back().from + runs_.back().length;
+  runs_.push_back({.start = pixel, .length = 1, .from = from});
   open_ = true;
   return 0;
 }

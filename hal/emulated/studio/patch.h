@@ -23,7 +23,6 @@ class RunMaker {
  private:
   std::vector<PixelRun>& runs_;
   bool open_ = false;
-  std::uint32_t pixels_ = 0;  // of all runs
 };
 
 /// Whether the runs lie in a picture of @p pixels, one behind the other, and are @p length

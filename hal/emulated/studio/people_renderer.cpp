@@ -101,7 +101,7 @@ void PeopleRenderer::addCamera(const StudioCamera& camera, const std::vector<flo
 
 void PeopleRenderer::setMoment(const Moment& moment) {
   movePeople(moment);
-  drawShadows(moment.second);
+  drawShadows();
   lightBodies(moment.second);
   shadeFloor(moment.second);
 }
@@ -144,7 +144,7 @@ void PeopleRenderer::setLamps(const gl::Program& program, double second) const {
   glBindTexture(GL_TEXTURE_2D_ARRAY, shadow_maps_.get());
 }
 
-void PeopleRenderer::drawShadows(double /*second*/) {
+void PeopleRenderer::drawShadows() {
   glBindFramebuffer(GL_FRAMEBUFFER, shadow_framebuffer_.get());
   glViewport(0, 0, kShadowSide, kShadowSide);
   glDisable(GL_SCISSOR_TEST);

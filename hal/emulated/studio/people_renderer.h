@@ -56,7 +56,7 @@ class PeopleRenderer {
     StudioCamera camera;
     gl::Texture depth;
   };
-  void drawShadows(double second);
+  void drawShadows();
   void lightBodies(double second);
   void shadeFloor(double second);
   void setLamps(const gl::Program& program, double second) const;

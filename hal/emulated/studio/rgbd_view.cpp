@@ -37,15 +37,12 @@ std::uint16_t stepsOf(float depth_m) {
 }  // namespace
 
 void RgbdPatch::putInto(const DepthRingWriter::Canvas& canvas) const {
-  const std::uint16_t* depth = depth_steps.data();
-  const std::uint8_t* colour = colour_rgb.data();
   for (const PixelRun& run : runs) {
+    const std::uint16_t* depth = &depth_steps[run.from];
     float* to = &canvas.depth_m[run.start];
     for (std::uint32_t i = 0; i < run.length; ++i) to[i] = static_cast<float>(depth[i]) * kStep_m;
-    std::memcpy(&canvas.colour_rgb[3 * std::size_t{run.start}], colour,
-                3 * std::size_t{run.length});
-    depth += run.length;
-    colour += 3 * std::size_t{run.length};
+    std::memcpy(&canvas.colour_rgb[3 * std::size_t{run.start}],
+                &colour_rgb[3 * std::size_t{run.from}], 3 * std::size_t{run.length});
   }
 }
 

@@ -19,7 +19,6 @@ constexpr float kFullScale_dn = 290;
 constexpr float kSignalScale = 128;
 constexpr float kRippleScale = 400;
 constexpr float kFloorScale = 128;
-/// Shade fainter than this drowns in the noise.
 
 /// Normal values to draw from: mean 0, deviation 1.
 const std::array<float, 65536>& normals() {

@@ -1,7 +1,6 @@
 #include "hal/emulated/studio/studio_scene.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "hal/emulated/studio/sensor_view.h"
 
