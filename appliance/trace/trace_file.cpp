@@ -211,6 +211,10 @@ std::string take(TraceLine line, bool first, Trace& trace) {
   if (first != std::holds_alternative<RunRecord>(line))
     return first ? "the first line of a trace is its run record" : "a second run record";
   if (trace.summary) return "a record after the summary";
+  if (const auto* frame = std::get_if<FrameRecord>(&line);
+      frame != nullptr && frame->camera >= trace.run.cameras)
+    return "a frame of camera " + std::to_string(frame->camera) + ", counted from 0: the run has " +
+           std::to_string(trace.run.cameras);
   std::visit(Overloaded{[&](RunRecord& run) { trace.run = std::move(run); },
                         [&](TriggerRecord& trigger) { trace.triggers.push_back(trigger); },
                         [&](FrameRecord& frame) { trace.frames.push_back(frame); },

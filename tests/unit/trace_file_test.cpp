@@ -187,6 +187,8 @@ TEST(TraceFile, NamesTheLineThatIsWrong) {
   EXPECT_THAT(faultOf(run + "{\"record\":7}\n"), HasSubstr("unknown record ''"));
   EXPECT_THAT(faultOf(run + appliance::toLine(SummaryRecord{}) + lineOf(SetRecord{})),
               HasSubstr("a record after the summary"));
+  EXPECT_THAT(faultOf(run + lineOf(FrameRecord{.camera = someRun().cameras})),
+              HasSubstr("a frame of camera"));
   EXPECT_THAT(faultOf("{\"record\":\"run\",\"format\":2}\n"), HasSubstr("not a trace of format 1"));
   EXPECT_THAT(faultOf(run + std::string("\0\xff\n", 3)), StartsWith("trace.jsonl:2: "));
 }
