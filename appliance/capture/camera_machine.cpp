@@ -83,7 +83,9 @@ CameraAction CameraMachine::search(rt::Timestamp now, const CameraFacts& facts) 
   return now < next_probe_ ? CameraAction::kNone : begin(CameraAction::kProbe);
 }
 
-/// Every trigger of the proof must have brought one frame, none more.
+/// Every trigger of the proof must have brought one frame, none more. Frames that came beside are
+/// counted for as many triggers as the proof has, then anew: the first frames of a stream may be
+/// looked at too late to be told apart, and say nothing of the following ones.
 void CameraMachine::prove(const CameraFacts& facts) {
   const std::uint32_t judged = judgedSince(facts, expected_from_);
   const std::uint32_t proof = std::min(kProofTriggers, facts.judged);
@@ -92,14 +94,16 @@ void CameraMachine::prove(const CameraFacts& facts) {
   if (health_.state == CameraState::kLost && delivers(facts.stored, facts.fired)) {
     become(CameraState::kRecovering);
   }
-  const bool in_step = missingOf(facts, proof) == 0 && facts.extra - mark_.extra <= proof / 4;
-  if (in_step) {
+  const bool counted = facts.fired >= proof_mark_.fired + proof + kTriggersOnTheWire;
+  const bool too_many = facts.extra - proof_mark_.extra > proof / 4;
+  if (counted && !too_many && missingOf(facts, proof) == 0) {
     proven_ = true;
     pushes_ = 0;
     mark_ = facts;
     become(CameraState::kStreaming);
     return;
   }
+  if (counted && too_many) proof_mark_ = facts;
   if (facts.fired < expected_from_ + kProofPatience) return;
   if (pushes_ < kPushes) {
     phase_ = Phase::kToClose;
@@ -214,7 +218,7 @@ void CameraMachine::expectFrom(const CameraFacts& facts) {
   proven_ = false;
   expected_from_ = facts.fired + 2;  // the next edge may be on its way already
   patient_until_ = facts.fired + kFirstFrameWithin;
-  mark_ = facts;
+  mark_ = proof_mark_ = facts;
 }
 
 void CameraMachine::lose(CameraTrouble trouble, std::string detail) {

@@ -103,7 +103,8 @@ class CameraMachine {
   std::uint64_t expected_from_ = 0;  // triggers from this one on must bring frames
   std::uint64_t patient_until_ = 0;  // silence before this trigger is no loss
   std::uint64_t stored_when_silent_ = 0;
-  CameraFacts mark_;  // facts when the present window of judging began
+  CameraFacts mark_;        // facts when the present window of judging began
+  CameraFacts proof_mark_;  // and when counting frames beside those of a proof began
 };
 
 }  // namespace appliance

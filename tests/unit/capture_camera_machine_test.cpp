@@ -279,6 +279,29 @@ TEST_F(CameraLife, MoreFramesThanTriggersAreNoProof) {
   EXPECT_TRUE(closed);
 }
 
+TEST_F(CameraLife, FirstFramesThatCouldNotBeToldApartAreForgivenOnceOthersFollow) {
+  connect();
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const bool told_apart = i >= 3;  // a machine that was busy at the beginning
+    fire(told_apart);
+    if (!told_apart) ++facts_.extra;
+    ASSERT_EQ(step(), CameraAction::kNone) << "a camera that brings every frame is left alone";
+  }
+  EXPECT_EQ(state(), CameraState::kStreaming);
+}
+
+TEST_F(CameraLife, FramesBesideThoseOfTriggersAreNoProofHoweverLongTheyAreWatched) {
+  connect();
+  CameraAction action = CameraAction::kNone;
+  for (std::uint32_t i = 0; i < 60 && action == CameraAction::kNone; ++i) {
+    fire(true);
+    if (i % 3 == 0) ++facts_.extra;  // something else fires it, too
+    action = step();
+    ASSERT_NE(state(), CameraState::kStreaming);
+  }
+  EXPECT_EQ(action, CameraAction::kClose);
+}
+
 TEST_F(CameraLife, ALostFrameNowAndThenIsNoTrouble) {
   stream();
   for (std::uint32_t i = 1; i < 400; ++i) {
