@@ -87,7 +87,9 @@ FrameName FrameNamer::doubt(const FrameEvidence& frame, const EdgeBoard& edges,
                 .trigger = *trigger,
                 .frame_id = frame.frame_id,
                 .arrival = frame.arrival};
-  const bool only_one = !was_settled && edges.newest() == 1;
+  // Seen nearest to the first edge there is no other whose frame it could be, however many edges
+  // followed until somebody asked.
+  const bool only_one = !was_settled && *trigger == 1;
   if (candidate_.agreeing < kAgreeing && !only_one) {
     return {between_edges ? kNoEdge : kUnsettled};
   }

@@ -59,6 +59,20 @@ TEST_F(FrameNamerTest, HasNoDoubtFromTheFirstTriggerOn) {
   for (std::uint64_t trigger = 1; trigger < 20; ++trigger) EXPECT_EQ(named(), trigger);
 }
 
+TEST_F(FrameNamerTest, HasNoDoubtOfTheFirstTriggerWhenItIsAskedAfterTheSecond) {
+  fire();
+  const rt::Nanoseconds first = clock_;
+  fire();  // the first frame's leader was seen in time, its end comes only now
+  EXPECT_EQ(send(first, 100us - kPeriod).trigger, 1U);
+  EXPECT_EQ(send(clock_, 100us).trigger, 2U);
+}
+
+TEST_F(FrameNamerTest, DoubtsAFirstFrameThatTheSecondTriggerCanHaveBrought) {
+  fire();
+  fire();
+  EXPECT_EQ(send(clock_, 13ms - kPeriod).why, Why::kUnsettled);
+}
+
 TEST_F(FrameNamerTest, NeedsThreeFramesOfACameraThatJoinsLater) {
   for (int i = 0; i < 10; ++i) fire();
   EXPECT_EQ(next().why, Why::kUnsettled);
