@@ -54,6 +54,7 @@ void Camera::powerOn() {
 gvcp::Status Camera::startAcquisition(rt::Timestamp now) {
   if (acquiring_) return gvcp::Status::kSuccess;
   history_ = {};
+  context_.scene.onAcquisition();
   source_.prepare({.sensor = identity_.sensor,
                    .offset_x_px = registers_.get(reg::kOffsetX),
                    .offset_y_px = registers_.get(reg::kOffsetY),

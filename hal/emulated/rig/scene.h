@@ -30,6 +30,8 @@ class Scene {
   [[nodiscard]] virtual gvsp::Picture expose(std::uint32_t camera, std::uint64_t trigger,
                                              std::uint32_t slot) = 0;
 
+  /// A camera was told to send what it will expose. The same thread.
+  virtual void onAcquisition() {}
   /// A rising edge came, for all cameras; their exposures follow. The same thread.
   virtual void onTrigger(std::uint64_t /*trigger*/, rt::Timestamp /*edge*/) {}
 };

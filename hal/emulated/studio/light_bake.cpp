@@ -300,4 +300,18 @@ BakedLight bakeLight(const std::vector<Surface>& surfaces, const std::vector<Lam
   return baked;
 }
 
+cv::Mat floorLight(const std::vector<Surface>& surfaces, const LightMap& map) {
+  const auto floor = std::ranges::find(surfaces, Cover::kFloor, &Surface::cover);
+  const LightMap::Place& place = map.places[static_cast<std::size_t>(floor - surfaces.begin())];
+  cv::Mat light(static_cast<int>(place.height), static_cast<int>(place.width), CV_32F);
+  for (std::uint32_t y = 0; y < place.height; ++y) {
+    for (std::uint32_t x = 0; x < place.width; ++x) {
+      const Eigen::Vector4f& t = map.texels[std::size_t{place.y + y} * map.width + place.x + x];
+      light.at<float>(static_cast<int>(y), static_cast<int>(x)) =
+          0.2126f * t.x() + 0.7152f * t.y() + 0.0722f * t.z();
+    }
+  }
+  return light;
+}
+
 }  // namespace emulator::studio

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 #include "hal/emulated/studio/lamps.h"
 #include "hal/emulated/studio/surfaces.h"
@@ -50,5 +51,8 @@ struct BakedLight {
 [[nodiscard]] BakedLight bakeLight(const std::vector<Surface>& surfaces,
                                    const std::vector<Lamp>& lamps,
                                    const std::function<void(double)>& progress);
+
+/// The luminance of the light on the floor, a value for each of its texels: CV_32F.
+[[nodiscard]] cv::Mat floorLight(const std::vector<Surface>& surfaces, const LightMap& map);
 
 }  // namespace emulator::studio

@@ -6,7 +6,7 @@
 
 namespace emulator::studio {
 
-std::vector<std::byte> writeMoments(std::span<const std::vector<Patch>> moments) {
+std::vector<std::byte> writeMoments(std::span<const MomentPatches> moments) {
   std::vector<std::byte> bytes;
   for (const auto& patches : moments) {
     for (const Patch& patch : patches) {
@@ -20,11 +20,11 @@ std::vector<std::byte> writeMoments(std::span<const std::vector<Patch>> moments)
   return bytes;
 }
 
-std::optional<std::vector<std::vector<Patch>>> readMoments(std::span<const std::byte> bytes,
-                                                           std::uint32_t count,
-                                                           std::uint32_t cameras, SizePx size) {
+std::optional<std::vector<MomentPatches>> readMoments(std::span<const std::byte> bytes,
+                                                      std::uint32_t count, std::uint32_t cameras,
+                                                      SizePx size) {
   const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
-  std::vector<std::vector<Patch>> moments(count, std::vector<Patch>(cameras));
+  std::vector<MomentPatches> moments(count, MomentPatches(cameras));
   for (auto& patches : moments) {
     for (Patch& patch : patches) {
       std::array<std::uint32_t, 2> counts{};

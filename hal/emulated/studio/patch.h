@@ -37,4 +37,7 @@ struct Patch {
   [[nodiscard]] Overlay overlay() const { return {.runs = runs, .pixels = pixels}; }
 };
 
+/// One moment as all cameras see it.
+using MomentPatches = std::vector<Patch>;
+
 }  // namespace emulator::studio

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -20,6 +19,7 @@
 #include "hal/emulated/studio/hall.h"
 #include "hal/emulated/studio/hall_renderer.h"
 #include "hal/emulated/studio/moment_file.h"
+#include "hal/emulated/studio/moment_store.h"
 #include "hal/emulated/studio/people_renderer.h"
 #include "hal/emulated/studio/rgbd_track.h"
 #include "hal/emulated/studio/scene_cache.h"
@@ -32,8 +32,9 @@ namespace emulator::studio {
 namespace {
 
 /// To be raised whenever pictures of the same seed change: it tells old caches from new ones.
-constexpr int kPictures = 5;
-constexpr std::uint32_t kBlock = 10;  ///< moments in one file of the cache
+constexpr int kPictures = 6;
+constexpr std::uint32_t kBlock = MomentStore::kBlock;  ///< moments in one file of the cache
+static_assert(kBlock % kVariants == 0);                ///< a play ends with a round of variants
 constexpr unsigned kMostThreads = 8;
 constexpr std::uint64_t kUsualMomentBytes = 160'000;  // per camera
 
@@ -47,19 +48,8 @@ void yieldToEverybody() {
   ::sched_setscheduler(0, SCHED_IDLE, &none);
 }
 
-/// What light falls on the floor, for the shade that people throw on it.
-cv::Mat floorLight(const std::vector<Surface>& hall, const LightMap& map) {
-  const auto floor = std::ranges::find(hall, Cover::kFloor, &Surface::cover);
-  const LightMap::Place& place = map.places[static_cast<std::size_t>(floor - hall.begin())];
-  cv::Mat light(static_cast<int>(place.height), static_cast<int>(place.width), CV_32F);
-  for (std::uint32_t y = 0; y < place.height; ++y) {
-    for (std::uint32_t x = 0; x < place.width; ++x) {
-      const Eigen::Vector4f& t = map.texels[std::size_t{place.y + y} * map.width + place.x + x];
-      light.at<float>(static_cast<int>(y), static_cast<int>(x)) =
-          0.2126f * t.x() + 0.7152f * t.y() + 0.0722f * t.z();
-    }
-  }
-  return light;
+std::string fileOfBlock(std::uint32_t block) {
+  return "moments-" + std::to_string(block);
 }
 
 }  // namespace
@@ -69,32 +59,26 @@ struct Play::State {
       : options(given),
         progress(std::move(tell)),
         rig(makeStudioRig(given.cameras, given.size, given.seed)),
-        moments(static_cast<std::size_t>(std::lround(given.play_s * kMoments_hz)) / kVariants *
-                kVariants),
-        order(given.only) {
-    if (given.depth_sensor) {
-      rgbd = std::make_unique<RgbdTrack>(given.seed, static_cast<std::uint32_t>(moments.size()));
-    }
-    if (!order.empty()) return;
-    order.resize(moments.size());
-    std::iota(order.begin(), order.end(), 0u);
+        moments(given.only, static_cast<std::uint32_t>(std::lround(given.play_s * kMoments_hz)) /
+                                kVariants * kVariants) {
+    if (given.depth_sensor) rgbd = std::make_unique<RgbdTrack>(given.seed, moments.moments());
   }
 
   void loadCache();
+  [[nodiscard]] bool loadBlock(std::uint32_t block);
   [[nodiscard]] bool keepsMoments() const { return options.only.empty(); }
   void prepareHall();
   void work(std::size_t worker);
   void drawBackdrops(std::size_t worker);
   void drawMoments(std::size_t worker);
-  void finish(std::uint32_t turn, MomentPatches patches);
+  [[nodiscard]] bool drawMoment(PeopleRenderer& people, std::uint32_t turn, std::size_t worker);
+  [[nodiscard]] bool mayDraw(std::size_t worker) const;
+  void finish(std::uint32_t turn);
+  void settle(std::uint32_t block);
   void storeBlock(std::uint32_t block);
   [[nodiscard]] bool hasHall() const {
     return std::ranges::all_of(views, [](const auto& view) { return view != nullptr; }) &&
            (!rgbd || rgbd->view() != nullptr);
-  }
-  [[nodiscard]] bool isDrawn(std::uint32_t turn) {
-    const std::lock_guard lock(mutex);
-    return drawn[turn] != 0;
   }
   [[nodiscard]] bool rests() const { return rt::now() < rt::fromNs(shown_ns.load()) + kRest; }
   void tell(double share, const char* what) {
@@ -120,13 +104,9 @@ struct Play::State {
 
   std::vector<std::unique_ptr<SensorView>> views;
   std::vector<std::vector<float>> depth_m;
-  std::vector<MomentPatches> moments;
-  std::unique_ptr<RgbdTrack> rgbd;   // none without a depth sensor
-  std::vector<std::uint32_t> order;  // of drawing: a moment for every turn
-  std::vector<std::uint8_t> drawn;   // by turn; guarded by mutex
-  std::uint32_t cached = 0;          // of the first so many moments we have the cameras' pictures
-  std::atomic<std::uint32_t> next = 0;
-  std::atomic<std::uint32_t> ready = 0;
+  MomentStore moments;
+  std::unique_ptr<RgbdTrack> rgbd;  // none without a depth sensor
+  std::uint32_t cached = 0;         // of the first so many moments we have the cameras' pictures
   std::atomic<std::size_t> backdrops_done = 0;
   std::atomic<bool> hall_drawn = false;  // in every view
   std::atomic<bool> playing = false;
@@ -154,23 +134,26 @@ void Play::State::loadCache() {
     tell(0.5 * (c + 1) / cameras, "reading");
   }
   if (rgbd) rgbd->load(cache);
-  for (std::uint32_t first = 0; keepsMoments() && first < moments.size(); first += kBlock) {
-    const auto bytes = cache.load("moments-" + std::to_string(first / kBlock));
-    if (!bytes) break;
-    const auto count =
-        std::min<std::uint32_t>(kBlock, static_cast<std::uint32_t>(moments.size()) - first);
-    auto block = readMoments(*bytes, count, cameras, options.size);
-    if (!block) break;
-    if (rgbd) rgbd->load(cache, first, count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      moments[first + i] = std::move((*block)[i]);
-      drawn[first + i] = !rgbd || rgbd->has(first + i) ? 1 : 0;
-    }
-    cached = first + count;
-    tell(0.5 + 0.5 * first / static_cast<double>(moments.size()), "reading");
-  }
-  while (ready < cached && drawn[ready] != 0) ++ready;
-  next = ready.load();
+  for (std::uint32_t block = 0; keepsMoments() && loadBlock(block); ++block)
+    tell(0.5 + 0.5 * cached / static_cast<double>(moments.moments()), "reading");
+}
+
+/// False: it is not there, or there is no memory for it.
+bool Play::State::loadBlock(std::uint32_t block) {
+  const std::uint32_t first = block * kBlock;
+  if (first >= moments.moments() || moments.full()) return false;
+  const auto patches = moments.patchesOfBlock(block);
+  const auto count = static_cast<std::uint32_t>(patches.size());
+  const auto bytes = cache.load(fileOfBlock(block));
+  if (!bytes) return false;
+  auto loaded = readMoments(*bytes, count, options.cameras, options.size);
+  if (!loaded) return false;
+  std::ranges::move(*loaded, patches.begin());
+  cached = first + count;
+  if (rgbd) rgbd->load(cache, first, count);
+  for (std::uint32_t turn = first; turn < cached; ++turn)
+    if ((!rgbd || rgbd->has(turn)) && moments.finish(turn)) settle(block);
+  return true;
 }
 
 void Play::State::prepareHall() {
@@ -217,61 +200,71 @@ void Play::State::drawMoments(std::size_t worker) {
   PeopleRenderer people(world->cast(), lamps, light.probes, floor_light);
   for (std::size_t c = 0; c < views.size(); ++c) people.addCamera(rig.cameras[c], depth_m[c]);
   if (rgbd) people.addCamera(rgbd->camera(), rgbd->view()->depth_m());
-  bool yielding = false;
-  while (!stop) {
-    if (playing) {
-      // One goes on, behind everybody else, while no camera sends.
-      if (worker != 0 || !options.grow) return;
-      if (!yielding) yieldToEverybody();
-      yielding = true;
-      if (rests()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        continue;
-      }
+  while (mayDraw(worker)) {
+    const auto turn = moments.take();
+    if (!turn) return;
+    if (drawMoment(people, *turn, worker)) {
+      finish(*turn);
+    } else {
+      moments.giveBack(*turn);
     }
-    const std::uint32_t turn = next++;
-    if (turn >= order.size()) return;
-    if (isDrawn(turn)) continue;
-    const std::uint32_t moment = order[turn];
-    const double exposure_s = rig.cameras.front().exposure_s;
-    people.setMoment(world->at(moment / kMoments_hz, exposure_s));
-    const bool kept = moment < cached;
-    MomentPatches patches = kept ? std::move(moments[moment]) : MomentPatches(views.size());
-    for (std::size_t c = 0; c < views.size() && !kept && !stop; ++c) {
-      patches[c] = views[c]->develop(moment, people.draw(c), people.floorShade());
-    }
-    if (rgbd && !stop) rgbd->draw(moment, *world, people, views.size());
-    if (!stop) finish(turn, std::move(patches));
   }
 }
 
-void Play::State::finish(std::uint32_t turn, MomentPatches patches) {
-  moments[order[turn]] = std::move(patches);
-  std::uint32_t block_done = UINT32_MAX;
-  {
-    const std::lock_guard lock(mutex);
-    drawn[turn] = 1;
-    std::uint32_t count = ready;
-    while (count < order.size() && drawn[count] != 0) ++count;
-    ready = count;
-    const std::uint32_t first = turn / kBlock * kBlock;
-    const auto last = std::min<std::size_t>(first + kBlock, order.size());
-    if (std::all_of(drawn.begin() + first, drawn.begin() + static_cast<std::ptrdiff_t>(last),
-                    [](auto d) { return d != 0; }))
-      block_done = turn / kBlock;
+/// Asked before every picture, so that what follows is late by one of them at most. Waits while a
+/// camera is being shown something.
+bool Play::State::mayDraw(std::size_t worker) const {
+  while (!stop && !moments.full() && playing) {
+    // One goes on, behind everybody else, while no camera sends.
+    if (worker != 0 || !options.grow) return false;
+    yieldToEverybody();
+    if (!rests()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
+  return !stop && !moments.full();
+}
+
+/// False: there was no time to the end of it.
+bool Play::State::drawMoment(PeopleRenderer& people, std::uint32_t turn, std::size_t worker) {
+  const std::uint32_t moment = moments.momentOf(turn);
+  people.setMoment(world->at(moment / kMoments_hz, rig.cameras.front().exposure_s));
+  if (moment >= cached) {
+    MomentPatches drawn(views.size());
+    for (std::size_t c = 0; c < views.size(); ++c) {
+      if (!mayDraw(worker)) return false;
+      drawn[c] = views[c]->develop(moment, people.draw(c), people.floorShade());
+    }
+    moments.patches(turn) = std::move(drawn);
+  }
+  if (!rgbd) return true;
+  if (!mayDraw(worker)) return false;
+  rgbd->draw(moment, *world, people, views.size());
+  return true;
+}
+
+void Play::State::finish(std::uint32_t turn) {
+  if (!moments.finish(turn)) return;
+  const std::uint32_t block = MomentStore::blockOf(turn);
+  if (keepsMoments()) storeBlock(block);
+  settle(block);
+}
+
+void Play::State::settle(std::uint32_t block) {
+  if (!moments.full() && !moments.settle(block)) {
+    std::fprintf(stderr, "kagami-emulator: studio: no memory for more than %.1f s of play\n",
+                 moments.ready() / kMoments_hz);
+  }
+  const std::lock_guard lock(mutex);
   changed.notify_all();
-  if (keepsMoments() && block_done != UINT32_MAX) storeBlock(block_done);
 }
 
 void Play::State::storeBlock(std::uint32_t block) {
-  const std::size_t first = std::size_t{block} * kBlock;
-  const std::size_t count = std::min<std::size_t>(kBlock, moments.size() - first);
-  const auto bytes = writeMoments(std::span(moments).subspan(first, count));
+  const std::uint32_t first = block * kBlock;
+  const auto patches = moments.patchesOfBlock(block);
+  const auto bytes = writeMoments(patches);
   const std::lock_guard lock(cache_mutex);
-  if (first >= cached) cache.store("moments-" + std::to_string(block), bytes);
-  if (rgbd)
-    rgbd->store(cache, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count));
+  if (first >= cached) cache.store(fileOfBlock(block), bytes);
+  if (rgbd) rgbd->store(cache, first, static_cast<std::uint32_t>(patches.size()));
 }
 
 void Play::State::work(std::size_t worker) {
@@ -304,7 +297,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
     s.renderer = (*context)->renderer() + ", " + (*context)->version();
   }
   const std::uint64_t wanted = (std::uint64_t{options.cameras} + (options.depth_sensor ? 1 : 0)) *
-                               (s.order.size() * kUsualMomentBytes +
+                               (s.moments.turns() * kUsualMomentBytes +
                                 22 * std::uint64_t{options.size.width} * options.size.height);
   if (const std::uint64_t free = rt::availableMemoryBytes(); free != 0 && wanted > free / 2) {
     return std::unexpected("the studio's " + std::to_string(static_cast<int>(options.play_s)) +
@@ -314,18 +307,17 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
   }
   s.views.resize(options.cameras);
   s.depth_m.resize(options.cameras);
-  s.drawn.assign(s.order.size(), 0);
   if (!options.cache.empty() && options.cache_gib > 0) {
     const std::string key = "pictures " + std::to_string(kPictures) + ", seed " +
                             std::to_string(options.seed) + ", " + std::to_string(options.cameras) +
                             " cameras " + std::to_string(options.size.width) + "x" +
                             std::to_string(options.size.height) + ", " +
-                            std::to_string(s.moments.size()) + " moments, " + s.renderer;
+                            std::to_string(s.moments.moments()) + " moments, " + s.renderer;
     s.cache = SceneCache(options.cache, key,
                          static_cast<std::uint64_t>(options.cache_gib * 1024 * 1024 * 1024));
     s.loadCache();
   }
-  if (s.ready < s.order.size() || !s.hasHall()) {
+  if (s.moments.ready() < s.moments.turns() || !s.hasHall()) {
     s.prepareHall();
     const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads);
     s.workers.reserve(threads);
@@ -336,20 +328,23 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
 
     const double first_play = s.keepsMoments() ? options.first_play_s * kMoments_hz : 1e9;
     const auto enough =
-        static_cast<std::uint32_t>(std::min(static_cast<double>(s.order.size()), first_play));
+        static_cast<std::uint32_t>(std::min(static_cast<double>(s.moments.turns()), first_play));
     const double patience_s = s.keepsMoments() ? options.patience_s : 1e6;
     const auto patience = start + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(patience_s));
     std::unique_lock lock(s.mutex);
-    while (s.working > 0 && (!s.hall_drawn || (s.ready < enough && (s.ready < 2 * kVariants ||
-                                                                    Clock::now() < patience)))) {
+    while (s.working > 0 &&
+           (!s.hall_drawn || (s.moments.ready() < enough &&
+                              (s.moments.ready() < 2 * kVariants || Clock::now() < patience)))) {
       s.changed.wait_for(lock, std::chrono::milliseconds(200));
-      if (s.ready > 0)
-        s.tell(0.6 + 0.4 * std::min(1.0, s.ready / static_cast<double>(enough)), "people");
+      if (s.moments.ready() > 0)
+        s.tell(0.6 + 0.4 * std::min(1.0, s.moments.ready() / static_cast<double>(enough)),
+               "people");
     }
-    if (!s.hall_drawn || s.ready < std::min<std::size_t>(kVariants, s.order.size()))
+    if (!s.hall_drawn || s.moments.ready() == 0)
       return std::unexpected(
-          "the studio's pictures cannot be drawn: a drawing context was refused");
+          std::string("the studio's pictures cannot be drawn: ") +
+          (s.moments.full() ? "there is no memory for them" : "a drawing context was refused"));
   }
   s.playing = true;
   s.tell(1, "ready");
@@ -361,15 +356,15 @@ const StudioRig& Play::rig() const {
 }
 
 std::uint32_t Play::momentCount() const {
-  return static_cast<std::uint32_t>(state_->moments.size());
+  return state_->moments.moments();
 }
 
 std::uint32_t Play::readyCount() const {
-  return state_->ready.load(std::memory_order_acquire);
+  return state_->moments.ready();
 }
 
-const Patch& Play::patch(std::uint32_t moment, std::uint32_t camera) const {
-  return state_->moments[moment][camera];
+const Overlay& Play::overlay(std::uint32_t moment, std::uint32_t camera) const {
+  return state_->moments.overlay(moment, camera);
 }
 
 std::vector<std::uint8_t> Play::background(std::uint32_t camera, std::uint32_t variant) const {
@@ -386,7 +381,8 @@ void Play::rest(rt::Timestamp now) {
 
 void Play::waitFor(std::uint32_t moments) const {
   std::unique_lock lock(state_->mutex);
-  state_->changed.wait(lock, [&] { return state_->ready >= moments || state_->working == 0; });
+  state_->changed.wait(lock,
+                       [&] { return state_->moments.ready() >= moments || state_->working == 0; });
 }
 
 }  // namespace emulator::studio

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/emulated/studio/patch.h"
+#include "hal/emulated/rig/overlay.h"
 #include "hal/emulated/studio/studio_options.h"
 #include "hal/emulated/studio/studio_rig.h"
 #include "rt/clock.h"
@@ -17,9 +17,6 @@
 namespace emulator::studio {
 
 class RgbdTrack;
-
-/// One moment as all cameras see it.
-using MomentPatches = std::vector<Patch>;
 
 /// The scene's pictures: the empty hall of every camera, and one moment after the other over it,
 /// taken from the cache or drawn by threads of the lowest priority.
@@ -40,9 +37,11 @@ class Play {
   [[nodiscard]] const StudioRig& rig() const;
   /// Moments of the whole scene.
   [[nodiscard]] std::uint32_t momentCount() const;
-  /// The first so many can be shown; with StudioOptions::only, so many of those.
+  /// The first so many can be shown, some more at a time; with StudioOptions::only, so many of
+  /// those.
   [[nodiscard]] std::uint32_t readyCount() const;
-  [[nodiscard]] const Patch& patch(std::uint32_t moment, std::uint32_t camera) const;
+  /// What a camera sees of a moment that is ready, over its empty hall. It stays where it is.
+  [[nodiscard]] const Overlay& overlay(std::uint32_t moment, std::uint32_t camera) const;
   /// A camera's empty hall; made anew by every call.
   [[nodiscard]] std::vector<std::uint8_t> background(std::uint32_t camera,
                                                      std::uint32_t variant) const;

@@ -12,7 +12,7 @@ namespace emulator::studio {
 cv::Mat rawPicture(const Play& play, std::uint32_t camera, std::uint32_t moment) {
   const SizePx size = play.rig().cameras[camera].model.image_size;
   std::vector<std::uint8_t> pixels = play.background(camera, moment % kVariants);
-  play.patch(moment, camera).overlay().putInto(pixels, 0);
+  play.overlay(moment, camera).putInto(pixels, 0);
   return cv::Mat(static_cast<int>(size.height), static_cast<int>(size.width), CV_8U, pixels.data())
       .clone();
 }

@@ -69,6 +69,10 @@ std::uint32_t StudioScene::momentOf(std::uint64_t trigger) {
   return static_cast<std::uint32_t>(trigger - round_.first_trigger);
 }
 
+void StudioScene::onAcquisition() {
+  play_->rest(rt::now());
+}
+
 void StudioScene::onTrigger(std::uint64_t trigger, rt::Timestamp edge) {
   // Rounds begin with exposures; until the next one has, its first moments count on from here.
   const std::uint64_t passed = trigger - std::min(trigger, round_.first_trigger);
@@ -86,7 +90,7 @@ gvsp::Picture StudioScene::expose(std::uint32_t camera, std::uint64_t trigger,
   play_->rest(rt::now());
   const std::uint32_t moment = momentOf(trigger);
   return {.pieces = {backgrounds_[camera][moment % kVariants]},
-          .overlay = play_->patch(moment, camera).overlay()};
+          .overlay = play_->overlay(moment, camera)};
 }
 
 }  // namespace emulator::studio

@@ -31,6 +31,7 @@ class StudioScene final : public Scene {
   [[nodiscard]] std::string cameraName(std::uint32_t camera) const override;
   [[nodiscard]] gvsp::Picture expose(std::uint32_t camera, std::uint64_t trigger,
                                      std::uint32_t slot) override;
+  void onAcquisition() override;
   void onTrigger(std::uint64_t trigger, rt::Timestamp edge) override;
   /// What the last trigger shows. Any thread.
   [[nodiscard]] PlayingMoment playing() const { return playing_.load(); }
