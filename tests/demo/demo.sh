@@ -38,6 +38,7 @@ bin=$root/build/release/bin
 rate_of_recording=30   # Hz: a 1 Gb/s link carries at most 55 of its portrait frames a second
 
 zoom=1.0
+warm_up=2  # seconds in which losses are told and not judged: all programs are new to the processors
 emulator_patience=600  # tenths of a second
 picture=1280x720
 filmed=yes
@@ -257,8 +258,9 @@ TEXT
 start_emulator() {  # RUN-FOLDER OPTION...
   run=$1; shift
   # Hardware is never late for want of a processor: the emulated cameras stand above the daemon.
-  "$bin/kagami-emulator" "$@" --realtime-priority 85 --wire-log "$run/wire.csv" --stats "$run/emulator.json" \
-    > "$run/emulator.log" 2>&1 </dev/null &
+  # Lateness counts from when lost frames do.
+  "$bin/kagami-emulator" "$@" --realtime-priority 85 --warm-up-s "$warm_up" \
+    --wire-log "$run/wire.csv" --stats "$run/emulator.json" > "$run/emulator.log" 2>&1 </dev/null &
   emulator=$!
   wait_for_line "$emulator" "$run/emulator.log" '^ready' "$emulator_patience" ||
     broken kagami-emulator "$run/emulator.log" 'its message says what to do'
@@ -303,6 +305,29 @@ stop_programs() {  # RUN-FOLDER
     broken kagami-emulator "$1/emulator.log" "it did not end well (exit status $rc)"
 }
 
+# Processor time of this machine so far: all, idle, taken by its host; hundredths of a second.
+processor_time() {
+  awk '$1 == "cpu" { all = 0; for (i = 2; i <= 9; ++i) all += $i; print all, $5 + $6, $9 }' /proc/stat
+}
+
+# What the machine was like meanwhile, so that a bad hour of it is told from a bad build.
+tell_of_machine() {  # PROCESSOR-TIME-BEFORE EMULATOR-STATISTICS
+  printf '%s\n%s\n' "$1" "$(processor_time)" | awk -v statistics="$2" '
+    NR == 1 { all = $1; idle = $2; taken = $3 }
+    END {
+      all = $1 - all
+      if (all > 0) printf "demo: this machine was idle for %.0f %% of the run, and its host took %.1f %%\n",
+        100 * ($2 - idle) / all, 100 * ($3 - taken) / all
+      while ((getline line < statistics) > 0) {
+        if (line ~ /"warm_up"/) early = 1
+        if (line !~ /"(p99|max)"/) continue
+        name = line ~ /p99/ ? "p99" : "max"; sub(/.*: */, "", line); late[early + 0, name] = line / 1e6
+      }
+      printf "demo: the emulated cameras were late by %.1f ms at p99, %.1f ms at most; in the warm-up %.1f ms\n",
+        late[0, "p99"], late[0, "max"], late[1, "max"]
+    }'
+}
+
 # What makes a run bad, a line each; nothing for a good one.
 faults_of() {  # REPORT
   awk '
@@ -323,7 +348,7 @@ faults_of() {  # REPORT
 
 make_report() {  # FOLDER
   "$bin/kagami" report --trace "$1/run/trace.jsonl" --wire-log "$1/run/wire.csv" \
-    --emulator-stats "$1/run/emulator.json" --out "$1/report.json" --table > "$1/report.txt" ||
+    --emulator-stats "$1/run/emulator.json" --warm-up "$warm_up" --out "$1/report.json" --table > "$1/report.txt" ||
     fail "kagami report failed (above) on $1/run/trace.jsonl"
 }
 
@@ -369,9 +394,11 @@ run_scene() {  # NAME FOLDER RATE EMULATOR-OPTION...
   [ -f "$run/rig.toml" ] || cp "$scene_folder/rig.toml" "$run/rig.toml"
   write_config "$run" "$rate" > "$run/kagamid.toml"
   start_daemon "$run"
+  time_before=$(processor_time)
   watch_run "$run"
   tell_of_sensor
   stop_programs "$run"
+  tell_of_machine "$time_before" "$run/emulator.json"
   keep_run
   conclude "$name" "$folder"
 }

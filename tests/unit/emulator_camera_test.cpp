@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "hal/emulated/rig/control_channel.h"
@@ -139,23 +140,45 @@ TEST(TriggerWire, RefusesEverythingElse) {
 TEST(Validity, HoldsForARunWithoutTrouble) {
   LatenessHistogram lateness;
   lateness.add(100us);
-  EXPECT_EQ(invalidReason({.triggers = 10, .frames_sent = 10}, lateness, 25ms), "");
+  EXPECT_EQ(
+      invalidReason({.counters = {.triggers = 10, .frames_sent = 10}, .lateness = lateness}, 25ms),
+      "");
 }
 
 TEST(Validity, FallsWithOvertriggersAndSendFailures) {
-  EXPECT_NE(invalidReason({.overtriggers = 1}, {}, 25ms), "");
-  EXPECT_NE(invalidReason({.send_failures = 1}, {}, 25ms), "");
+  EXPECT_NE(invalidReason({.counters = {.overtriggers = 1}}, 25ms), "");
+  EXPECT_NE(invalidReason({.counters = {.send_failures = 1}}, 25ms), "");
 }
 
 TEST(Validity, FallsWhenPacketsLeaveLate) {
   LatenessHistogram often;
   for (int i = 0; i < 100; ++i) often.add(i < 97 ? 1ms : 6ms);
-  EXPECT_NE(invalidReason({}, often, 25ms), "");
+  EXPECT_NE(invalidReason({.lateness = often}, 25ms), "");
   LatenessHistogram once;
   for (int i = 0; i < 1000; ++i) once.add(1ms);
   once.add(26ms);
-  EXPECT_EQ(invalidReason({}, once, 30ms), "");
-  EXPECT_NE(invalidReason({}, once, 25ms), "");
+  EXPECT_EQ(invalidReason({.lateness = once}, 30ms), "");
+  EXPECT_NE(invalidReason({.lateness = once}, 25ms), "");
+}
+
+TEST(Validity, IsJudgedByWhatFollowsTheWarmUp) {
+  RunRecord run{.counters = {.overtriggers = 3, .send_failures = 2}};
+  run.lateness.add(80ms);
+  EXPECT_NE(invalidReason(run, 25ms), "") << "it has not ended";
+  run.endWarmUp();
+  run.lateness.add(1ms);
+  EXPECT_EQ(invalidReason(run, 25ms), "");
+  EXPECT_EQ(run.early_lateness.max(), 80ms) << "it is told all the same";
+
+  RunRecord late = run;
+  late.lateness.add(26ms);
+  EXPECT_NE(invalidReason(late, 25ms), "");
+  RunRecord busy = run;
+  ++busy.counters.overtriggers;
+  EXPECT_THAT(invalidReason(busy, 25ms), testing::HasSubstr("1 trigger edges"));
+  RunRecord refused = run;
+  ++refused.counters.send_failures;
+  EXPECT_THAT(invalidReason(refused, 25ms), testing::HasSubstr("1 packets"));
 }
 
 TEST(LatenessHistogram, GivesQuantilesWithinItsStep) {

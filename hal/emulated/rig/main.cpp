@@ -30,6 +30,7 @@ struct Arguments {
   std::string first_address = "127.0.0.1";
   double link_gbps = 1;
   double seconds = 0;
+  double warm_up_s = 0;
   std::string stats;
   std::string rig_out;
   emulator::RigOptions rig;
@@ -112,6 +113,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--seconds", a.seconds, "stop after this time; 0: run until stopped")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
+  app.add_option("--warm-up-s", a.warm_up_s,
+                 "time after the first edge in which lateness does not make the run invalid")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   app.add_option("--opto-delays-us", a.rig.opto_delays_us,
                  "what each camera's Line1 takes to see an edge; one value per camera")
       ->delimiter(',')
@@ -193,6 +198,7 @@ int serve(Arguments& a, const rt::StopSignals& stop) {
   if (!address) return fail("--first-address " + address.error());
   a.rig.first_address = *address;
   a.rig.link_bits_per_second = a.link_gbps * 1e9;
+  a.rig.warm_up = rt::Nanoseconds{static_cast<std::int64_t>(a.warm_up_s * 1e9)};
   if (a.seconds > 0) {
     a.rig.run_for = rt::Nanoseconds{static_cast<std::int64_t>(a.seconds * 1e9)};
   }
@@ -208,12 +214,11 @@ int serve(Arguments& a, const rt::StopSignals& stop) {
   if (auto served = rig->run(stop); !served) return fail(served.error());
   if (auto closed = closeStudio(a, **scene); !closed) return fail(closed.error());
 
-  const auto reason =
-      emulator::invalidReason(rig->counters(), rig->lateness(), rig->triggerPeriod());
+  const auto reason = emulator::invalidReason(rig->record(), rig->triggerPeriod());
   if (!reason.empty()) std::fprintf(stderr, "kagami-emulator: run INVALID: %s\n", reason.c_str());
   if (!a.stats.empty()) {
-    if (auto written = emulator::writeStatistics(a.stats, (*scene)->cameraCount(), rig->counters(),
-                                                 rig->lateness(), rig->triggerPeriod(),
+    if (auto written = emulator::writeStatistics(a.stats, (*scene)->cameraCount(), rig->record(),
+                                                 rig->triggerPeriod(),
                                                  emulator::processCpuSeconds() - cpu_at_ready);
         !written) {
       return fail(written.error());

@@ -49,13 +49,16 @@ struct Rig::State {
         xml(makeDeviceXml(given.max_packet_bytes)),
         loss(given.loss, given.seed),
         context{.scene = scene,
-                .counters = counters,
-                .lateness = lateness,
+                .counters = record.counters,
+                .lateness = record.lateness,
                 .loss = loss,
                 .wire_log = nullptr,
                 .link_bits_per_second = given.link_bits_per_second,
                 .max_packet_bytes = given.max_packet_bytes,
-                .xml = xml} {}
+                .xml = xml} {
+    record.warm_up = given.warm_up;
+    warming_up = given.warm_up > rt::Nanoseconds{0};
+  }
 
   std::expected<void, std::string> open();
   std::expected<void, std::string> openCamera(std::uint32_t number);
@@ -72,8 +75,8 @@ struct Rig::State {
 
   RigOptions options;
   std::string xml;
-  Counters counters;
-  LatenessHistogram lateness;
+  RunRecord record;
+  bool warming_up = false;
   LossModel loss;
   std::optional<WireLog> wire_log;
   std::optional<FaultLog> fault_log;
@@ -220,7 +223,7 @@ void Rig::State::receiveWire(rt::Timestamp now) {
         {reinterpret_cast<const char*>(datagram.data()), static_cast<std::size_t>(bytes)});
     if (edge && std::chrono::abs(edge->at - now) <= kLongestWireDelay) {
       onEdge(*edge);
-    } else if (counters.wire_errors++ == 0) {
+    } else if (record.counters.wire_errors++ == 0) {
       std::fputs(
           "kagami-emulator: the trigger wire carried a datagram that is no edge of now; edges read "
           "\"L1+ <monotonic ns>\" or \"L1- <monotonic ns>\"; such datagrams are ignored\n",
@@ -231,7 +234,7 @@ void Rig::State::receiveWire(rt::Timestamp now) {
 
 void Rig::State::receiveFaults() {
   fault_port->serve(static_cast<std::uint32_t>(cameras.size()), [this](const FaultCommand& fault) {
-    ++counters.faults_commanded;
+    ++record.counters.faults_commanded;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       if (fault.camera.value_or(i) == i) cameras[i].applyFault(fault, rt::now());
     }
@@ -239,9 +242,14 @@ void Rig::State::receiveFaults() {
 }
 
 void Rig::State::onEdge(const WireEdge& edge) {
+  Counters& counters = record.counters;
   if (edge.rising) {
     if (counters.triggers++ == 0) first_edge = edge.at;
     last_edge = edge.at;
+    if (warming_up && edge.at - first_edge >= record.warm_up) {
+      warming_up = false;
+      record.endWarmUp();
+    }
     context.scene.onTrigger(counters.triggers, edge.at);
   }
   for (Camera& camera : cameras) camera.onLine1(edge.rising, edge.at, counters.triggers);
@@ -307,17 +315,14 @@ std::expected<void, std::string> Rig::run(const rt::StopSignals& stop) {
   }
 }
 
-const Counters& Rig::counters() const {
-  return state_->counters;
-}
-const LatenessHistogram& Rig::lateness() const {
-  return state_->lateness;
+const RunRecord& Rig::record() const {
+  return state_->record;
 }
 
 rt::Nanoseconds Rig::triggerPeriod() const {
-  if (state_->counters.triggers < 2) return rt::Nanoseconds{0};
+  if (state_->record.counters.triggers < 2) return rt::Nanoseconds{0};
   return (state_->last_edge - state_->first_edge) /
-         static_cast<std::int64_t>(state_->counters.triggers - 1);
+         static_cast<std::int64_t>(state_->record.counters.triggers - 1);
 }
 
 }  // namespace emulator

@@ -25,6 +25,7 @@ struct RigOptions {
   std::uint64_t seed = 1;
   double internal_trigger_hz = 0;  ///< 0: edges come from the wire only
   std::optional<rt::Nanoseconds> run_for;
+  rt::Nanoseconds warm_up{0};                    ///< not held against the run: RunRecord
   int realtime_priority = 0;                     ///< SCHED_FIFO; 0: ordinary scheduling
   std::string wire_log;                          ///< file; empty: none
   std::uint16_t fault_port = kDefaultFaultPort;  ///< on first_address; 0: none
@@ -44,8 +45,7 @@ class Rig {
   /// Serves until @p stop or the end of the run time.
   [[nodiscard]] std::expected<void, std::string> run(const rt::StopSignals& stop);
 
-  [[nodiscard]] const Counters& counters() const;
-  [[nodiscard]] const LatenessHistogram& lateness() const;
+  [[nodiscard]] const RunRecord& record() const;
   /// Mean time between rising edges; zero with fewer than two.
   [[nodiscard]] rt::Nanoseconds triggerPeriod() const;
 

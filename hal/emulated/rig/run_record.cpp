@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cinttypes>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -19,6 +21,12 @@ std::string milliseconds(rt::Nanoseconds t) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f ms", static_cast<double>(t.count()) * 1e-6);
   return text;
+}
+
+nlohmann::ordered_json quantilesOf(const LatenessHistogram& lateness) {
+  return {{"p50", lateness.quantile(0.5).count()},
+          {"p99", lateness.quantile(0.99).count()},
+          {"max", lateness.max().count()}};
 }
 
 }  // namespace
@@ -70,16 +78,22 @@ void WireLog::add(const SentFrame& f) {
                rt::toNs(f.exposure_end), rt::toNs(f.first_packet), rt::toNs(f.last_packet));
 }
 
-std::string invalidReason(const Counters& counters, const LatenessHistogram& lateness,
-                          rt::Nanoseconds period) {
-  if (counters.overtriggers > 0) {
-    return std::to_string(counters.overtriggers) +
+void RunRecord::endWarmUp() {
+  early_overtriggers = counters.overtriggers;
+  early_send_failures = counters.send_failures;
+  std::swap(lateness, early_lateness);
+}
+
+std::string invalidReason(const RunRecord& run, rt::Nanoseconds period) {
+  const LatenessHistogram& lateness = run.lateness;
+  if (const auto late = run.counters.overtriggers - run.early_overtriggers; late > 0) {
+    return std::to_string(late) +
            " trigger edges came before a camera could follow: lower the trigger rate, the exposure "
            "or the packet delay";
   }
-  if (counters.send_failures > 0) {
-    return std::to_string(counters.send_failures) +
-           " packets could not be sent: " + std::strerror(counters.last_send_errno);
+  if (const auto refused = run.counters.send_failures - run.early_send_failures; refused > 0) {
+    return std::to_string(refused) +
+           " packets could not be sent: " + std::strerror(run.counters.last_send_errno);
   }
   if (const auto p99 = lateness.quantile(0.99); p99 > kLateP99Limit) {
     return "packets left late: p99 " + milliseconds(p99) + " is over " +
@@ -93,19 +107,16 @@ std::string invalidReason(const Counters& counters, const LatenessHistogram& lat
 }
 
 std::expected<void, std::string> writeStatistics(const std::string& path, std::uint32_t cameras,
-                                                 const Counters& counters,
-                                                 const LatenessHistogram& lateness,
-                                                 rt::Nanoseconds period, double cpu_seconds) {
-  const std::string reason = invalidReason(counters, lateness, period);
+                                                 const RunRecord& run, rt::Nanoseconds period,
+                                                 double cpu_seconds) {
+  const Counters& counters = run.counters;
+  const std::string reason = invalidReason(run, period);
   const nlohmann::ordered_json json = {
       {"cameras", cameras},
       {"triggers", counters.triggers},
       {"frames_sent", counters.frames_sent},
       {"overtriggers", counters.overtriggers},
-      {"pacing_late_ns",
-       {{"p50", lateness.quantile(0.5).count()},
-        {"p99", lateness.quantile(0.99).count()},
-        {"max", lateness.max().count()}}},
+      {"pacing_late_ns", quantilesOf(run.lateness)},
       {"send_failures", counters.send_failures},
       {"valid", reason.empty()},
       {"invalid_reason", reason},
@@ -121,6 +132,11 @@ std::expected<void, std::string> writeStatistics(const std::string& path, std::u
       {"resends_unavailable", counters.resends_unavailable},
       {"wire_errors", counters.wire_errors},
       {"trigger_period_ns", period.count()},
+      {"warm_up",
+       {{"seconds", std::chrono::duration<double>(run.warm_up).count()},
+        {"overtriggers", run.early_overtriggers},
+        {"send_failures", run.early_send_failures},
+        {"pacing_late_ns", quantilesOf(run.early_lateness)}}},
   };
   std::ofstream file(path);
   file << json.dump(2) << '\n';

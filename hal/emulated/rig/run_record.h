@@ -72,19 +72,37 @@ class WireLog {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
+/// All of a run that says whether it was valid.
+///
+/// What happens in its warm-up, the first so many seconds after its first edge, is told and not
+/// held against it: whoever counts frames leaves out that time, too. A run that ends before is
+/// judged as a whole.
+struct RunRecord {
+  Counters counters;
+  LatenessHistogram lateness;             ///< of sends since the warm-up
+  rt::Nanoseconds warm_up{0};             ///< how long it was to last
+  std::uint64_t early_overtriggers = 0;   ///< of counters, in the warm-up
+  std::uint64_t early_send_failures = 0;  ///< of counters, in the warm-up
+  LatenessHistogram early_lateness;       ///< of sends in the warm-up
+
+  /// Now. Allocates nothing.
+  void endWarmUp();
+};
+
 /// Why a run measured the emulator instead of the receiver; empty when it is valid.
 ///
 /// Limits: no edge ignored, no packet refused, p99 of the send lateness <= 5 ms (a fifth of
 /// the period at 40 Hz), none later than one trigger period (@p period zero: not known).
-[[nodiscard]] std::string invalidReason(const Counters& counters, const LatenessHistogram& lateness,
-                                        rt::Nanoseconds period);
+[[nodiscard]] std::string invalidReason(const RunRecord& run, rt::Nanoseconds period);
 
 /// CPU time of this process so far, user and system.
 [[nodiscard]] double processCpuSeconds();
 
 /// Writes the JSON that --stats asks for. @p cpu_seconds  spent while serving.
-[[nodiscard]] std::expected<void, std::string> writeStatistics(
-    const std::string& path, std::uint32_t cameras, const Counters& counters,
-    const LatenessHistogram& lateness, rt::Nanoseconds period, double cpu_seconds);
+[[nodiscard]] std::expected<void, std::string> writeStatistics(const std::string& path,
+                                                               std::uint32_t cameras,
+                                                               const RunRecord& run,
+                                                               rt::Nanoseconds period,
+                                                               double cpu_seconds);
 
 }  // namespace emulator
