@@ -40,6 +40,33 @@ TEST_F(EmulatorTest, GivesOneStampedFramePerPulse) {
   EXPECT_EQ(wireLogLines(), 21u);
 }
 
+TEST_F(EmulatorTest, TellsAndDoesNotJudgeWhatHappenedInItsWarmUp) {
+  for (const char* warm_up_s : {"0", "0.5"}) {
+    start({"--warm-up-s", warm_up_s});
+    std::string error;
+    auto camera = open(error);
+    ASSERT_TRUE(camera) << error;
+    ASSERT_EQ(pushProfile(camera.get()), "");
+    Failure f;
+    arv_camera_set_float(camera.get(), "ExposureTime", 100'000, &f);
+    auto stream = startStream(camera.get());
+    ASSERT_TRUE(stream);
+    pulse();
+    pulse();  // the camera is still exposing
+    std::this_thread::sleep_for(600ms);
+    pulse();
+    stream.reset();  // while there still is a camera that answers
+    camera.reset();
+    const auto stats = stop();
+    const bool warmed_up = stats["warm_up"]["seconds"] > 0;
+    EXPECT_EQ(stats["triggers"], 3) << warm_up_s;
+    EXPECT_EQ(stats["overtriggers"], 1) << warm_up_s;
+    EXPECT_EQ(stats["warm_up"]["overtriggers"], warmed_up ? 1 : 0) << warm_up_s;
+    const auto reason = stats["invalid_reason"].get<std::string>();
+    EXPECT_EQ(reason.find("1 trigger edges") == std::string::npos, warmed_up) << reason;
+  }
+}
+
 TEST_F(EmulatorTest, SendsAgainWhatTheWireLost) {
   start({"--loss", "0.02", "--seed", "7"});
   std::string error;

@@ -393,6 +393,7 @@ run_scene() {  # NAME FOLDER RATE EMULATOR-OPTION...
   start_emulator "$run" "$@"
   [ -f "$run/rig.toml" ] || cp "$scene_folder/rig.toml" "$run/rig.toml"
   write_config "$run" "$rate" > "$run/kagamid.toml"
+  say "$name: starting kagamid, which takes the memory of its history first"
   start_daemon "$run"
   time_before=$(processor_time)
   watch_run "$run"

@@ -202,7 +202,12 @@ void Play::State::drawMoments(std::size_t worker) {
   if (rgbd) people.addCamera(rgbd->camera(), rgbd->view()->depth_m());
   while (mayDraw(worker)) {
     const auto turn = moments.take();
-    if (!turn) return;
+    if (!turn) {
+      // What another one gives back when playing begins is ours.
+      if (worker != 0 || moments.ready() == moments.turns()) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      continue;
+    }
     if (drawMoment(people, *turn, worker)) {
       finish(*turn);
     } else {
