@@ -13,7 +13,6 @@
 #include <thread>
 
 #include <sched.h>
-#include <sys/resource.h>
 
 #include "hal/emulated/studio/covers.h"
 #include "hal/emulated/studio/hall.h"
@@ -273,7 +272,7 @@ void Play::State::storeBlock(std::uint32_t block) {
 }
 
 void Play::State::work(std::size_t worker) {
-  ::setpriority(PRIO_PROCESS, 0, 10);  // of this thread
+  letOthersGoFirst();
   auto context = openContext();
   if (context) drawBackdrops(worker);
   backdrops_drawn->arrive_and_wait();
@@ -296,11 +295,9 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
   const auto start = Clock::now();
   auto state = std::make_unique<State>(options, progress);
   State& s = *state;
-  {
-    auto context = openContext();
-    if (!context) return std::unexpected(context.error());
-    s.renderer = (*context)->renderer() + ", " + (*context)->version();
-  }
+  auto renderer = rendererName();
+  if (!renderer) return std::unexpected(renderer.error());
+  s.renderer = std::move(*renderer);
   const std::uint64_t wanted = (std::uint64_t{options.cameras} + (options.depth_sensor ? 1 : 0)) *
                                (s.moments.turns() * kUsualMomentBytes +
                                 22 * std::uint64_t{options.size.width} * options.size.height);

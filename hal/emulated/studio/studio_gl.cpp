@@ -1,7 +1,11 @@
 #include "hal/emulated/studio/studio_gl.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <thread>
+
+#include <sys/resource.h>
 
 namespace emulator::studio {
 namespace {
@@ -14,10 +18,30 @@ constexpr const char* kPreamble =
 }  // namespace
 
 std::expected<std::unique_ptr<gl::Context>, std::string> openContext() {
-  auto context = gl::Context::create(0);
+  constexpr unsigned kMostThreads = 16;
+  auto context =
+      gl::Context::create(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads));
   if (context) return context;
   return std::unexpected("the studio cannot be drawn: " + context.error() +
                          ", or take --scene stamp, which needs neither");
+}
+
+std::expected<std::string, std::string> rendererName() {
+  std::expected<std::string, std::string> name;
+  std::jthread([&name] {
+    letOthersGoFirst();
+    const auto context = openContext();
+    if (context) {
+      name = (*context)->renderer() + ", " + (*context)->version();
+    } else {
+      name = std::unexpected(context.error());
+    }
+  }).join();
+  return name;
+}
+
+void letOthersGoFirst() {
+  ::setpriority(PRIO_PROCESS, 0, 10);  // on Linux: of this thread
 }
 
 gl::Program makeProgram(const char* name, const std::string& vertex, const std::string& fragment) {

@@ -9,9 +9,18 @@
 
 namespace emulator::studio {
 
-/// A context that draws on its caller's thread alone: there is one for every processor.
+/// A context for the calling thread. Mesa's software renderer computes a context's vertices there,
+/// and its pixels on as many threads as there are processors, for one context at a time; the first
+/// context of a process makes these threads, which inherit its caller's nice value.
 /// Errors   Says in one line what is missing on this machine, and which scene needs none of it.
 [[nodiscard]] std::expected<std::unique_ptr<gl::Context>, std::string> openContext();
+
+/// What draws here, with its version: pictures are the same bit for bit only where this is.
+/// As openContext() otherwise; the renderer's threads let others go first, whoever calls.
+[[nodiscard]] std::expected<std::string, std::string> rendererName();
+
+/// The calling thread does so, too.
+void letOthersGoFirst();
 
 /// Of the studio's own shaders, which begin with highp precision of all they use: one that does
 /// not compile is our bug, and the program ends with its message.
