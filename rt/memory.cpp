@@ -154,7 +154,9 @@ int prefault(std::span<std::byte> memory) {
       }
     }
   };
-  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxPrefaultThreads);
+  const std::size_t chunks = (memory.size() + kPrefaultChunkBytes - 1) / kPrefaultChunkBytes;
+  const auto threads = static_cast<unsigned>(std::min<std::size_t>(
+      std::clamp(std::thread::hardware_concurrency(), 1U, kMaxPrefaultThreads), chunks));
   auto helpers = startHelpers(threads - 1, work);
   work();
   helpers.clear();  // joins
