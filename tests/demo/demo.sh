@@ -348,7 +348,8 @@ faults_of() {  # REPORT
 
 make_report() {  # FOLDER
   "$bin/kagami" report --trace "$1/run/trace.jsonl" --wire-log "$1/run/wire.csv" \
-    --emulator-stats "$1/run/emulator.json" --warm-up "$warm_up" --out "$1/report.json" --table > "$1/report.txt" ||
+    --emulator-stats "$1/run/emulator.json" --warm-up "$warm_up" \
+    --out "$1/report.json" --table > "$1/report.txt" ||
     fail "kagami report failed (above) on $1/run/trace.jsonl"
 }
 

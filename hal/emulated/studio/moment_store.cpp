@@ -6,6 +6,17 @@
 #include <utility>
 
 namespace emulator::studio {
+namespace {
+
+/// What @p by_turn has of the turns of @p block.
+template <typename T>
+std::span<T> ofBlock(std::vector<T>& by_turn, std::uint32_t block) {
+  const std::size_t first = std::size_t{block} * MomentStore::kBlock;
+  return std::span(by_turn).subspan(
+      first, std::min<std::size_t>(MomentStore::kBlock, by_turn.size() - first));
+}
+
+}  // namespace
 
 MomentStore::MomentStore(std::vector<std::uint32_t> order, std::uint32_t moments)
     : order_(std::move(order)), overlays_(moments) {
@@ -19,8 +30,7 @@ MomentStore::MomentStore(std::vector<std::uint32_t> order, std::uint32_t moments
 }
 
 std::span<MomentPatches> MomentStore::patchesOfBlock(std::uint32_t block) {
-  const std::uint32_t first = block * kBlock;
-  return std::span(patches_).subspan(first, std::min(kBlock, turns() - first));
+  return ofBlock(patches_, block);
 }
 
 std::optional<std::uint32_t> MomentStore::take() {
@@ -37,10 +47,9 @@ void MomentStore::giveBack(std::uint32_t turn) {
 }
 
 bool MomentStore::finish(std::uint32_t turn) {
-  const std::uint32_t first = blockOf(turn) * kBlock;
   const std::lock_guard lock(mutex_);
   turns_[turn] = Turn::kDrawn;
-  return std::ranges::all_of(std::span(turns_).subspan(first, std::min(kBlock, turns() - first)),
+  return std::ranges::all_of(ofBlock(turns_, blockOf(turn)),
                              [](Turn one) { return one == Turn::kDrawn; });
 }
 

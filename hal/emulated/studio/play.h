@@ -22,8 +22,10 @@ class RgbdTrack;
 /// taken from the cache or drawn by threads of the lowest priority.
 ///
 /// Threads  Pictures are read by one thread, while our own draw further ones.
-/// Memory   Up to 8 MB for each moment of 20 cameras, usually 3; refused beyond half of what is
-/// free. Errors   Needs EGL and OpenGL ES 3.
+/// Memory   Locked; up to 8 MB for each moment of 20 cameras, usually 3. Refused beyond half of
+///          what is free.
+/// Errors   Needs EGL and OpenGL ES 3. Where memory ends before the play does, that is told on
+///          stderr, and what is ready is shown.
 class Play {
  public:
   /// How far the preparation is, 0..1, and what is being done.
@@ -37,8 +39,8 @@ class Play {
   [[nodiscard]] const StudioRig& rig() const;
   /// Moments of the whole scene.
   [[nodiscard]] std::uint32_t momentCount() const;
-  /// The first so many can be shown, some more at a time; with StudioOptions::only, so many of
-  /// those.
+  /// The first so many can be shown, whole rounds of a hall's variants; with StudioOptions::only,
+  /// so many of those.
   [[nodiscard]] std::uint32_t readyCount() const;
   /// What a camera sees of a moment that is ready, over its empty hall. It stays where it is.
   [[nodiscard]] const Overlay& overlay(std::uint32_t moment, std::uint32_t camera) const;

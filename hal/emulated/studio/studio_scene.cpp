@@ -42,7 +42,7 @@ StudioScene::StudioScene(std::unique_ptr<Play> play, rt::LockedArena memory)
     }
   }
   rounds_.reserve(kRemembered);
-  round_ = {.first_trigger = 1, .moments = play_->readyCount() / kVariants * kVariants};
+  round_ = {.first_trigger = 1, .moments = play_->readyCount()};
   rounds_.push_back(round_);
 }
 
@@ -63,8 +63,7 @@ std::uint32_t StudioScene::momentOf(std::uint64_t trigger) {
   if (trigger < round_.first_trigger) return static_cast<std::uint32_t>(trigger % round_.moments);
   const std::uint64_t passed = trigger - round_.first_trigger;
   if (passed < round_.moments) return static_cast<std::uint32_t>(passed);
-  round_ = {.first_trigger = trigger - passed % round_.moments,
-            .moments = play_->readyCount() / kVariants * kVariants};
+  round_ = {.first_trigger = trigger - passed % round_.moments, .moments = play_->readyCount()};
   if (rounds_.size() < kRemembered) rounds_.push_back(round_);
   return static_cast<std::uint32_t>(trigger - round_.first_trigger);
 }
