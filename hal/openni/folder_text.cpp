@@ -46,7 +46,8 @@ std::expected<FolderSensorFile, std::string> parseFolderSensor(std::string_view 
     return std::unexpected(where + ": " + rt::printable(error.description()) +
                            ": a recording's folder holds a sensor.toml");
   }
-  if (table["format"].value<std::int64_t>() != kFormat)
+  // Exact: what converts a fraction to a whole number has no answer for 1e62.
+  if (table["format"].value_exact<std::int64_t>() != kFormat)
     return std::unexpected(where + ": format must be 1, the one this version reads");
   const auto size = pairOf(table, "size_px", kLargestSide_px);
   const auto focal = pairOf(table, "focal_px", 1e6);

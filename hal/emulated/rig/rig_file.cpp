@@ -14,14 +14,12 @@ namespace {
 constexpr std::int64_t kFormat = 1;
 constexpr std::int64_t kLargestSidePx = 16'384;
 
+/// What toml++ writes it can read again, at full precision: 1e11 as well as 0.1.
 template <std::size_t N>
-std::string list(const std::array<double, N>& values) {
-  std::ostringstream text;
-  text.precision(12);
-  text << std::showpoint << '[';
-  for (std::size_t i = 0; i < N; ++i) text << (i == 0 ? "" : ", ") << values[i];
-  text << ']';
-  return text.str();
+toml::array list(const std::array<double, N>& values) {
+  toml::array list;
+  for (const double value : values) list.push_back(value);
+  return list;
 }
 
 std::string place(const std::filesystem::path& path, const toml::node& node) {
@@ -37,8 +35,9 @@ std::expected<CameraModel, std::string> readCamera(const std::filesystem::path& 
   }
   const auto* size = table["image_size_px"].as_array();
   const bool two = size != nullptr && size->size() == 2;
-  const std::int64_t width = two ? (*size)[0].value_or(std::int64_t{0}) : 0;
-  const std::int64_t height = two ? (*size)[1].value_or(std::int64_t{0}) : 0;
+  // Exact: what converts a fraction to a whole number has no answer for 1e70.
+  const std::int64_t width = two ? (*size)[0].value_exact<std::int64_t>().value_or(0) : 0;
+  const std::int64_t height = two ? (*size)[1].value_exact<std::int64_t>().value_or(0) : 0;
   if (width <= 0 || height <= 0 || width > kLargestSidePx || height > kLargestSidePx) {
     return std::unexpected(place(path, table) + "camera \"" + rt::printable(camera.name) +
                            "\" needs image_size_px = [width, height], whole numbers");
@@ -97,7 +96,7 @@ std::expected<RigModel, std::string> parseRigFile(std::string_view text,
     return std::unexpected(name.string() + ":" + std::to_string(error.source().begin.line) + ": " +
                            rt::printable(error.description()));
   }
-  if (root["format"].value<std::int64_t>() != kFormat) {
+  if (root["format"].value_exact<std::int64_t>() != kFormat) {
     return std::unexpected(name.string() + ": format = 1 is missing: not a rig this version reads");
   }
   RigModel rig;
