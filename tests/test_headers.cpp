@@ -1,0 +1,1 @@
+// See tests/CMakeLists.txt: carries the precompiled header of the tests.
