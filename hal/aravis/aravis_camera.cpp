@@ -185,7 +185,7 @@ Ref<ArvCamera> openByAddress(const std::string& address, GlibError& error) {
   const Ref<GInetAddress> camera{g_inet_address_new_from_string(address.c_str())};
   if (!interface || !camera) return nullptr;
   // Aravis reads a camera's description with one parser state and one table of formats for the
-  // whole process. Cameras that do not answer were found out before: nobody waits for a dead one.
+  // whole process. The probe has already left out cameras that do not answer, so none waits here.
   static std::mutex one_description_at_a_time;
   const std::lock_guard lock(one_description_at_a_time);
   const Ref<ArvDevice> device{arv_gv_device_new(interface.get(), camera.get(), error.out())};

@@ -11,10 +11,10 @@
 namespace hal::aravis {
 
 /// Opens the GigE Vision camera at profile.address, pushes the whole profile and reads it
-/// back. Blocks: some milliseconds, half a second where nobody answers, seconds where a camera
-/// dies meanwhile; as does the camera's destructor.
+/// back. Blocks for some milliseconds, for half a second if no camera answers, and for seconds if
+/// the camera dies meanwhile. The camera's destructor blocks likewise.
 ///
-/// Threads  Any, several cameras at once: one that is dead does not delay the others.
+/// Threads  Any, several cameras in parallel: one that is dead does not delay the others.
 ///
 /// @p receive is applied to the thread on which the camera's frames arrive; where that is not
 /// permitted the thread runs as it is (listTasks() shows it).

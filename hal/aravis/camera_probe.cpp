@@ -50,7 +50,7 @@ class RegisterReader {
     camera.sin_port = htons(kPort);
     if (inet_pton(AF_INET, address.c_str(), &camera.sin_addr) != 1) return;
     socket_ = rt::UniqueFd(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    // Connected: another machine's datagrams stay out, and "nobody listens" comes as an error.
+    // Connected: another machine's datagrams stay out, and a closed port is reported as an error.
     connected_ = socket_.get() >= 0 &&
                  ::connect(socket_.get(), reinterpret_cast<sockaddr*>(&camera), sizeof camera) == 0;
   }
@@ -75,7 +75,7 @@ class RegisterReader {
     while (waitForDatagram()) {
       std::array<std::uint8_t, 576> datagram{};
       const auto bytes = ::recv(socket_.get(), datagram.data(), datagram.size(), 0);
-      if (bytes < 0 && errno != EAGAIN) return std::nullopt;  // nobody listens there
+      if (bytes < 0 && errno != EAGAIN) return std::nullopt;  // the port is closed
       if (bytes < static_cast<ssize_t>(kHeaderBytes)) continue;
       const auto word = [&](std::size_t at) {
         return static_cast<std::uint32_t>(datagram[at] << 8 | datagram[at + 1]);
@@ -115,7 +115,7 @@ CameraProbe probeCamera(const std::string& address, rt::Nanoseconds timeout) {
   RegisterReader camera(address, rt::now() + timeout);
   const auto privilege = camera.read(kControlPrivilege);
   if (!privilege) return {.answer = CameraAnswer::kNone, .controller = {}};
-  // Under exclusive control some cameras let nobody else read.
+  // Under exclusive control some cameras refuse every other reader.
   if (!privilege->refused && (privilege->value & kControlled) == 0) {
     return {.answer = CameraAnswer::kFree, .controller = {}};
   }

@@ -9,7 +9,7 @@
 
 namespace hal::aravis {
 
-/// What the camera's link was negotiated to; nothing where the camera does not tell.
+/// What the camera's link was negotiated to; nothing if the camera does not report it.
 [[nodiscard]] std::optional<double> linkSpeed_mbps(ArvCamera* camera);
 
 /// Whether a link of @p negotiated_mbps is slower than the plan's. One line for a person, without

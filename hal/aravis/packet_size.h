@@ -14,7 +14,8 @@ namespace hal::aravis {
 struct PacketSize {
   std::uint32_t bytes = 0;     ///< the IP datagram
   std::uint32_t delay_ns = 0;  ///< between two of them, in proportion to their size
-  std::string note;            ///< why not as asked, without the camera's name; empty: as asked
+  std::string
+      note;  ///< why it differs from the request, without the camera's name; empty: as requested
   bool operator==(const PacketSize&) const = default;
 };
 
@@ -27,8 +28,8 @@ struct PacketSize {
 
 /// Has the camera send test packets (GigE Vision: one datagram of the very size, never cut into
 /// fragments) and takes the largest size that arrives: nothing else proves an MTU that lies on
-/// switches as well as on network cards. Before the stream is made; the camera streams to nobody
-/// meanwhile. Some milliseconds; 0.2 s for every size that does not arrive.
+/// switches as well as on network cards. Call it before the stream is made: the camera
+/// streams to no receiver meanwhile. Some milliseconds; 0.2 s for every size that does not arrive.
 ///
 /// Where no size arrives the asked one stays, with a note: the camera may have no test packets.
 [[nodiscard]] PacketSize provePacketSize(ArvCamera* camera, const CameraProfile& profile);

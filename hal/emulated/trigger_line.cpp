@@ -40,7 +40,7 @@ rt::Result<TriggerEdge> EmulatedTriggerLine::setActive(bool active) RT_SAFE {
       std::to_chars(text.data() + 4, text.data() + text.size(), std::int64_t{rt::toNs(before)});
   (void)error;  // 28 characters hold every 64-bit number
   const auto bytes = static_cast<std::size_t>(end - text.data());
-  // A refusal (ECONNREFUSED) is the answer to an earlier edge that nobody took.
+  // A refusal (ECONNREFUSED) is the answer to an earlier edge that no receiver took.
   const ssize_t sent = ::send(fd_, text.data(), bytes, 0);
   const rt::Timestamp after = rt::now();
   if (sent < 0) {

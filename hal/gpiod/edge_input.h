@@ -16,7 +16,7 @@ struct EdgeInputSettings {
 /// Claims one input line with both edges, stamped on CLOCK_MONOTONIC, not debounced.
 ///
 /// Threads  As hal::EdgeInput.
-/// Errors   A line that is absent, named twice or held by somebody.
+/// Errors   A line that is absent, named twice or held by another program.
 [[nodiscard]] std::expected<std::unique_ptr<EdgeInput>, std::string> openEdgeInput(
     const EdgeInputSettings& settings);
 

@@ -29,13 +29,13 @@ struct LineList {
 
 /// The one line of that name. Pure.
 ///
-/// Errors  Not there (with the nearest names), there twice, or held by somebody else. Each starts
+/// Errors  Not there (with the nearest names), there twice, or held by another program. Each starts
 ///         with @p key, the setting that names the line.
 [[nodiscard]] std::expected<ListedLine, std::string> findLine(const LineList& list,
                                                               const std::string& name,
                                                               const std::string& key);
 
-/// The line if the list has exactly one of that name and nobody holds it; none if it is absent.
+/// The line if the list has exactly one of that name and no program holds it; none if it is absent.
 /// Pure.
 [[nodiscard]] std::expected<std::optional<ListedLine>, std::string> findOptionalLine(
     const LineList& list, const std::string& name, const std::string& key);

@@ -31,7 +31,8 @@ struct OpenedPanel {
 /// is. Behind an expander a panel works, and a note says so.
 ///
 /// Threads  As hal::ButtonPanel.
-/// Errors   No button at all, a name that exists twice, or a line that somebody holds. Missing
+/// Errors   No button at all, a name that exists twice, or a line that another program holds.
+/// Missing
 ///          single buttons and missing lamps are notes. While running: when a chip goes, alive()
 ///          turns false, its buttons are not pressed and its lamps stay as they are.
 /// @p sysfs where the kernel's device tree is; another folder in tests.

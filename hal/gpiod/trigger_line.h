@@ -23,7 +23,8 @@ struct TriggerLineSettings {
 /// Threads  As hal::TriggerLine.
 /// RT       setActive() is one ioctl on a chip that the CPU writes itself; nothing is allocated
 ///          unless the chip is gone.
-/// Errors   Here: a line that is absent, named twice, held by somebody, behind an expander, or on
+/// Errors   Here: a line that is absent, named twice, held by another program, behind an expander,
+/// or on
 ///          another chip than the first. While running: kDeviceLost when the chip is gone.
 /// @p sysfs where the kernel's device tree is; another folder in tests.
 [[nodiscard]] std::expected<std::unique_ptr<TriggerLine>, std::string> openTriggerLine(

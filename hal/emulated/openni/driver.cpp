@@ -351,7 +351,7 @@ class Driver final : public oni::driver::DriverBase {
   void deviceClose(oni::driver::DeviceBase* device) override { delete device; }
 
  private:
-  /// Tells OpenNI2 when the sensor comes and goes.
+  /// Reports to OpenNI2 when the sensor comes and goes.
   void look() {
     if (!ring_) {
       if (auto opened = DepthRingReader::open(path_)) ring_ = std::move(*opened);

@@ -28,7 +28,8 @@ std::string because(const std::string& path, const char* what) {
   return "depth ring " + path + ": " + what + " (" + std::strerror(errno) + ")";
 }
 
-/// One mapped ring. The writer keeps its file locked: the kernel tells the reader when it died.
+/// One mapped ring. The writer keeps its file locked, so the reader learns from the kernel when
+/// the writer dies.
 struct MappedRing {
   rt::UniqueFd fd;
   std::byte* bytes = nullptr;
@@ -107,9 +108,9 @@ DepthRingWriter::~DepthRingWriter() {
 std::expected<DepthRingWriter, std::string> DepthRingWriter::create(const std::string& path,
                                                                     const RgbdFormat& format) {
   if (!plausible(format)) {
-    return std::unexpected("depth ring " + path + ": pictures of " +
-                           std::to_string(format.width_px) + "x" +
-                           std::to_string(format.height_px) + " are not to be had: 16 to 4096 px");
+    return std::unexpected(
+        "depth ring " + path + ": pictures of " + std::to_string(format.width_px) + "x" +
+        std::to_string(format.height_px) + " are not possible: 16 to 4096 px a side");
   }
   if (const rt::UniqueFd old(::open(path.c_str(), O_RDONLY | O_CLOEXEC)); old.valid()) {
     if (::flock(old.get(), LOCK_SH | LOCK_NB) != 0) {
@@ -119,7 +120,7 @@ std::expected<DepthRingWriter, std::string> DepthRingWriter::create(const std::s
     }
   }
   auto mapping = std::make_unique<Mapping>();
-  // Made beside and moved into place: nobody ever sees half a ring.
+  // Made beside and moved into place, so that no reader sees half a ring.
   const std::string fresh = path + "." + std::to_string(::getpid());
   mapping->path = path;
   mapping->fd = rt::UniqueFd(::open(fresh.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));

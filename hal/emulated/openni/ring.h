@@ -33,7 +33,7 @@ struct RgbdFormat {
 /// them: noise, holes, quantisation, latency and its own clock.
 ///
 /// A picture is delivered when its exposure and the sensor's latency have passed, so the writer may
-/// draw ahead, by half of the slots; one that comes later than that is delivered at once. The
+/// draw ahead, by half of the slots; one that comes later is delivered immediately. The
 /// sensor is plugged in while the writer lives and says so.
 ///
 /// Threads  One writer in all; each object: one caller, setPlugged() any thread.

@@ -42,7 +42,7 @@ class SensorModel {
                    std::span<std::uint8_t> colour_rgb) const;
 
   /// Depth as the infra-red camera sees it, from depth in the colour camera's pixels: what the
-  /// sensor delivers where nobody asks it to register.
+  /// sensor delivers if its client does not ask for registered depth.
   void unregister(std::span<const std::uint16_t> registered_mm,
                   std::span<std::uint16_t> depth_mm) const;
 

@@ -177,7 +177,7 @@ void Camera::startTransfer() {
   const Exposure exposure = *exposure_;
   auto fault = std::exchange(exposure_fault_, std::nullopt);
   exposure_.reset();
-  if (registers_.get(reg::kStreamPort) == 0) return;  // no stream is open: nobody to send to
+  if (registers_.get(reg::kStreamPort) == 0) return;  // no stream is open
   const std::uint32_t slot = next_slot_;
   next_slot_ = (next_slot_ + 1) % kFrameHistory;
   last_block_id_ = last_block_id_ == 0xffff ? 1 : static_cast<std::uint16_t>(last_block_id_ + 1);
@@ -198,7 +198,7 @@ void Camera::startTransfer() {
   if (ready > exposure.end && !fault) fault = link_fault_;
   const auto held = faults_.takeHold();
   if (held > rt::Nanoseconds{0}) fault = Fault::kLateLeader;
-  // Two messages at once: their packets wake the receiver once, as a network card's coalesced
+  // Two messages together: their packets wake the receiver once, as a network card's coalesced
   // interrupt does, and Pacing bounds the time they span.
   transfer_.emplace(
       Transfer{.slot = slot,

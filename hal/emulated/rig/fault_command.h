@@ -8,7 +8,7 @@
 
 namespace emulator {
 
-/// What a camera can be told to do wrong.
+/// The faults that a camera can simulate.
 enum class Fault : std::uint8_t {
   kIgnoreTriggers,  ///< the next N edges
   kIgnoreEvery,     ///< every N-th edge; 0: none

@@ -24,7 +24,7 @@ struct FaultEffect {
 /// misses can be explained. CSV: instant_ns,camera,fault; cameras count from 1, the instants are
 /// CLOCK_MONOTONIC.
 ///
-/// A command stands there as it was given ("late-leader 25"), at once; its effects as
+/// A command is written immediately, as it was given ("late-leader 25"); its effects as
 /// "effect <fault> trigger <n>[ frame <id>][ packets <lost>]", before the program ends.
 class FaultLog {
  public:

@@ -31,7 +31,8 @@ class FaultPort {
   UniqueFd socket_;
 };
 
-/// Sends one command to a running emulator's fault port; what it answered. An error: nobody did.
+/// Sends one command to a running emulator's fault port and returns its answer. An error if no
+/// emulator answered.
 [[nodiscard]] std::expected<std::string, std::string> commandFault(std::uint32_t address,
                                                                    std::uint16_t port,
                                                                    std::string_view command);

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-/// The one table of what the emulated camera can be told: it makes the GenICam file that
+/// The one table of the emulated camera's settings: it makes the GenICam file that
 /// clients read and the checks that the registers do, so the two cannot disagree. Names
 /// and behaviour follow GenICam SFNC, as a Basler ace shows them.
 namespace emulator {

@@ -161,8 +161,8 @@ std::expected<std::unique_ptr<emulator::studio::DepthFeed>, std::string> feedDep
   return emulator::studio::DepthFeed::begin(*studio, a.truth);
 }
 
-/// Which trigger showed what can only be told afterwards: while it grows, the play begins anew
-/// earlier.
+/// Which trigger showed which moment is known only at the end: while the play grows, it begins
+/// again earlier.
 std::expected<void, std::string> closeStudio(const Arguments& a, const emulator::Scene& scene) {
   const auto* studio = dynamic_cast<const emulator::studio::StudioScene*>(&scene);
   if (studio == nullptr || a.truth.empty()) return {};
@@ -260,7 +260,7 @@ int main(int argc, char** argv) {
   CLI::App* fault = app.add_subcommand("fault", "make a camera of a running emulator do wrong");
   fault->add_option("command", arguments.fault, "as in docs/emulator.md, for example: \"7 kill\"")
       ->required();
-  fault->fallthrough();  // --first-address and --fault-port tell which emulator
+  fault->fallthrough();  // --first-address and --fault-port choose the emulator
   CLI11_PARSE(app, argc, argv);
   if (*fault) return commandFault(arguments);
   return *converter ? convert(arguments) : serve(arguments, stop);

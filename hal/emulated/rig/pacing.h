@@ -19,8 +19,8 @@ struct LinkTiming {
 
 /// When which packets of a frame leave: a link that starts at `start` has carried packet n
 /// entirely after (n + 1) x perPacket(). Groups of packets leave when their last one would
-/// have left a real camera; the leader leaves alone, at once, because its arrival tells
-/// the exposure's end. A late sender catches up at once: lateness never adds up.
+/// have left a real camera; the leader leaves alone and immediately, because its arrival
+/// marks the exposure's end. A late sender catches up immediately: lateness never adds up.
 ///
 /// Pure: time is an argument.
 class Pacing {

@@ -32,7 +32,7 @@ struct RigOptions {
   std::string fault_log;                         ///< file; empty: none
 };
 
-/// N cameras and their trigger wire, served by one thread until told to stop.
+/// N cameras and their trigger wire, served by one thread until it is stopped.
 class Rig {
  public:
   /// Opens every socket and the wire log; the first that fails names itself.

@@ -54,7 +54,7 @@ Vec3 floorAlbedo(Vec3 p, float pixel) {
   return colour;
 }
 
-/// @p along  metres along the wall; @p wall tells walls apart.
+/// @p along  metres along the wall; @p wall is the wall's number.
 Vec3 wallAlbedo(float along, float z, int wall, float pixel) {
   Vec3 colour = mix(kLowerWall, kUpperWall, above(z, kWainscot_m, pixel));
   colour = mix(colour, kSeam, 0.6f * grid(along + 0.6f, 1.2f, 0.02f, pixel));

@@ -74,9 +74,9 @@ class WireLog {
 
 /// All of a run that says whether it was valid.
 ///
-/// What happens in its warm-up, the first so many seconds after its first edge, is told and not
-/// held against it: whoever counts frames leaves out that time, too. A run that ends before is
-/// judged as a whole.
+/// The warm-up is the first seconds after the first edge. What happens in it is reported and not
+/// judged; count frames from its end on, too. A run that ends within its warm-up is judged as a
+/// whole.
 struct RunRecord {
   Counters counters;
   LatenessHistogram lateness;             ///< of sends since the warm-up

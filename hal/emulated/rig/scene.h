@@ -30,7 +30,7 @@ class Scene {
   [[nodiscard]] virtual gvsp::Picture expose(std::uint32_t camera, std::uint64_t trigger,
                                              std::uint32_t slot) = 0;
 
-  /// A camera was told to send what it will expose. The same thread.
+  /// A client started a camera's acquisition. The same thread.
   virtual void onAcquisition() {}
   /// A rising edge came, for all cameras; their exposures follow. The same thread.
   virtual void onTrigger(std::uint64_t /*trigger*/, rt::Timestamp /*edge*/) {}

@@ -28,7 +28,7 @@ std::expected<StampScene, std::string> StampScene::make(std::uint32_t cameras, S
   if (!pictures) {
     return std::unexpected("the stamp scene's pictures need " +
                            std::to_string(cameras * viewBytes(size) / 1'000'000) +
-                           " MB of memory that are not to be had: fewer or smaller cameras");
+                           " MB of memory, which is not available: use fewer or smaller cameras");
   }
   return StampScene(makeArcRig(cameras, size), size, std::move(*pictures));
 }

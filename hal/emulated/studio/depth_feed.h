@@ -16,7 +16,7 @@ namespace emulator::studio {
 /// Shows the emulated depth sensor the play as it runs, beside the cameras.
 ///
 /// With a folder for the truth: depth_sensor.json says where the sensor stands and what its lens
-/// is; depth.csv tells of every picture when its light was taken and which second of the play it
+/// is; depth.csv has, for each picture, when its light was taken and which second of the play it
 /// shows.
 ///
 /// Threads  One of its own, of ordinary priority: it copies a picture thirty times a second.

@@ -17,7 +17,7 @@ struct FloorShade {
   static constexpr float kStep_m = 0.05f;
   /// Where more than this is left, shade drowns in the noise and is none.
   static constexpr float kFaintest = 0.988f;
-  cv::Mat share;  ///< CV_32F, row 0 at kLowY_m; 1 where nobody is
+  cv::Mat share;  ///< CV_32F, row 0 at kLowY_m; 1 where no person is
 
   /// Column and row of a point (rig frame, metres) among the cells; empty where it is not of the
   /// floor or no four cells lie around it.

@@ -247,7 +247,7 @@ BakedLight bakeLight(const std::vector<Surface>& surfaces, const std::vector<Lam
     for (std::uint32_t y = 0; y < map.places[i].height; ++y) rows.push_back({i, y});
   }
   std::atomic<std::size_t> done = 0;
-  const auto tell = [&] {
+  const auto report = [&] {
     if (const std::size_t n = ++done; n % 512 == 0)
       progress(static_cast<double>(n) / static_cast<double>(2 * rows.size()));
   };
@@ -266,7 +266,7 @@ BakedLight bakeLight(const std::vector<Surface>& surfaces, const std::vector<Lam
       to.texels[std::size_t{place.y + row.y} * map.width + place.x + x] =
           light(Vector3f(surface.at(u, v) + normal * kOffset_m), normal, random);
     }
-    tell();
+    report();
   };
   onEveryCore(rows.size(), [&](std::size_t i) {
     eachTexel(map, rows[i], [&](const Vector3f& point, const Vector3f& normal, Random& random) {

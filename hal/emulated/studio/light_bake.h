@@ -47,7 +47,7 @@ struct BakedLight {
 };
 
 /// Shadows of area lamps and one bounce, by rays: some seconds of every core.
-/// @p progress  is told the share done, from one of the working threads.
+/// @p progress  receives the share done, from one of the working threads.
 [[nodiscard]] BakedLight bakeLight(const std::vector<Surface>& surfaces,
                                    const std::vector<Lamp>& lamps,
                                    const std::function<void(double)>& progress);

@@ -12,9 +12,9 @@ namespace emulator::studio {
 
 /// Some moments' pictures in one piece of locked memory, in huge pages where the system has them.
 ///
-/// Every second the thread that sends meets some 150 MB of pictures that no cache holds. In pages
-/// of 4 KiB it then waits for address translations more than for the pixels: on a virtual machine
-/// that took a third of its time, and tens of milliseconds at once where its host had dropped them.
+/// Each second the sending thread reads some 150 MB of pictures that no cache holds. With pages of
+/// 4 KiB it waits for address translations more than for the pixels: on a virtual machine that
+/// took a third of its time, and tens of milliseconds in one piece if the host had dropped them.
 struct PackedMoments {
   rt::LockedArena memory;
   std::vector<std::vector<Overlay>> overlays;  ///< by moment and camera; they borrow from memory

@@ -10,7 +10,7 @@
 
 namespace emulator::studio {
 
-/// Somebody as they are in a moment.
+/// A person's body in one moment.
 struct ShownBody {
   std::size_t body = 0;  ///< of the cast
   PosedMesh mesh;
@@ -23,8 +23,8 @@ struct PeopleArea {
   std::vector<const ShownBody*> people;
 };
 
-/// Where people are in a picture: one rectangle each, those that overlap as one. Nobody who is
-/// partly behind the camera. Pure.
+/// Where people are in a picture: one rectangle each, overlapping ones joined. People who are
+/// partly behind the camera are left out. Pure.
 [[nodiscard]] std::vector<PeopleArea> peopleAreas(const StudioCamera& camera,
                                                   const std::vector<ShownBody>& people,
                                                   float nearest_m);

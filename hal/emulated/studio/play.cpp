@@ -30,7 +30,7 @@
 namespace emulator::studio {
 namespace {
 
-/// To be raised whenever pictures of the same seed change: it tells old caches from new ones.
+/// Raise this whenever pictures of the same seed change: caches of another number are not used.
 constexpr int kPictures = 6;
 constexpr std::uint32_t kBlock = MomentStore::kBlock;  ///< moments in one file of the cache
 static_assert(kBlock % kVariants == 0);                ///< a play ends with a round of variants
@@ -41,8 +41,8 @@ constexpr rt::Nanoseconds kRest = std::chrono::seconds(1);
 
 using Clock = std::chrono::steady_clock;
 
-/// The thread that calls runs only when nobody else wants the processor.
-void yieldToEverybody() {
+/// The calling thread runs only when no other thread wants the processor.
+void yieldToOthers() {
   const sched_param none{};
   ::sched_setscheduler(0, SCHED_IDLE, &none);
 }
@@ -54,9 +54,9 @@ std::string fileOfBlock(std::uint32_t block) {
 }  // namespace
 
 struct Play::State {
-  State(const StudioOptions& given, Progress tell)
+  State(const StudioOptions& given, Progress shown)
       : options(given),
-        progress(std::move(tell)),
+        progress(std::move(shown)),
         rig(makeStudioRig(given.cameras, given.size, given.seed)),
         moments(given.only, static_cast<std::uint32_t>(std::lround(given.play_s * kMoments_hz)) /
                                 kVariants * kVariants) {
@@ -80,7 +80,7 @@ struct Play::State {
            (!rgbd || rgbd->view() != nullptr);
   }
   [[nodiscard]] bool rests() const { return rt::now() < rt::fromNs(shown_ns.load()) + kRest; }
-  void tell(double share, const char* what) {
+  void report(double share, const char* what) {
     const std::lock_guard lock(progress_mutex);
     progress(share, what);
   }
@@ -130,11 +130,11 @@ void Play::State::loadCache() {
     views[c] = std::make_unique<SensorView>(rig.cameras[c], c, std::span(*bytes).first(view_bytes));
     depth_m[c].resize(pixels);
     std::memcpy(depth_m[c].data(), &(*bytes)[view_bytes], pixels * sizeof(float));
-    tell(0.5 * (c + 1) / cameras, "reading");
+    report(0.5 * (c + 1) / cameras, "reading");
   }
   if (rgbd) rgbd->load(cache);
   for (std::uint32_t block = 0; keepsMoments() && loadBlock(block); ++block)
-    tell(0.5 + 0.5 * cached / static_cast<double>(moments.moments()), "reading");
+    report(0.5 + 0.5 * cached / static_cast<double>(moments.moments()), "reading");
 }
 
 /// False: it is not there, or there is no memory for it.
@@ -156,16 +156,16 @@ bool Play::State::loadBlock(std::uint32_t block) {
 }
 
 void Play::State::prepareHall() {
-  tell(0.01, "hall");
+  report(0.01, "hall");
   hall = buildHall(options.seed);
   lamps = hallLamps(options.seed);
   std::jthread dressing([this] { world = std::make_unique<World>(options.seed); });
   covers = drawCovers(options.seed);
   grain = drawFloorGrain(options.seed);
-  tell(0.05, "light");
-  light = bakeLight(hall, lamps, [this](double share) { tell(0.05 + 0.17 * share, "light"); });
+  report(0.05, "light");
+  light = bakeLight(hall, lamps, [this](double share) { report(0.05 + 0.17 * share, "light"); });
   floor_light = floorLight(hall, light.map);
-  tell(0.22, "people");
+  report(0.22, "people");
 }
 
 void Play::State::drawBackdrops(std::size_t worker) {
@@ -184,8 +184,8 @@ void Play::State::drawBackdrops(std::size_t worker) {
       const std::lock_guard lock(cache_mutex);
       cache.store("camera-" + std::to_string(c), bytes);
     }
-    tell(0.24 + 0.36 * static_cast<double>(++backdrops_done) / static_cast<double>(views.size()),
-         "cameras");
+    report(0.24 + 0.36 * static_cast<double>(++backdrops_done) / static_cast<double>(views.size()),
+           "cameras");
   }
   const bool ours = worker == views.size() % thread_count;
   if (!ours || !rgbd || rgbd->view() != nullptr || stop) return;
@@ -221,7 +221,7 @@ bool Play::State::mayDraw(std::size_t worker) const {
   while (!stop && !moments.full() && playing) {
     // One goes on, behind everybody else, while no camera sends.
     if (worker != 0 || !options.grow) return false;
-    yieldToEverybody();
+    yieldToOthers();
     if (!rests()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
@@ -340,8 +340,8 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
                               (s.moments.ready() < 2 * kVariants || Clock::now() < patience)))) {
       s.changed.wait_for(lock, std::chrono::milliseconds(200));
       if (s.moments.ready() > 0)
-        s.tell(0.6 + 0.4 * std::min(1.0, s.moments.ready() / static_cast<double>(enough)),
-               "people");
+        s.report(0.6 + 0.4 * std::min(1.0, s.moments.ready() / static_cast<double>(enough)),
+                 "people");
     }
     if (!s.hall_drawn || s.moments.ready() == 0)
       return std::unexpected(
@@ -349,7 +349,7 @@ std::expected<std::unique_ptr<Play>, std::string> Play::begin(const StudioOption
           (s.moments.full() ? "there is no memory for them" : "a drawing context was refused"));
   }
   s.playing = true;
-  s.tell(1, "ready");
+  s.report(1, "ready");
   return std::unique_ptr<Play>(new Play(std::move(state)));
 }
 

@@ -24,8 +24,8 @@ class RgbdTrack;
 /// Threads  Pictures are read by one thread, while our own draw further ones.
 /// Memory   Locked; up to 8 MB for each moment of 20 cameras, usually 3. Refused beyond half of
 ///          what is free.
-/// Errors   Needs EGL and OpenGL ES 3. Where memory ends before the play does, that is told on
-///          stderr, and what is ready is shown.
+/// Errors   Needs EGL and OpenGL ES 3. If memory is too short for the whole play, a line on
+///          stderr says so and what is ready is shown.
 class Play {
  public:
   /// How far the preparation is, 0..1, and what is being done.
@@ -44,12 +44,12 @@ class Play {
   [[nodiscard]] std::uint32_t readyCount() const;
   /// What a camera sees of a moment that is ready, over its empty hall. It stays where it is.
   [[nodiscard]] const Overlay& overlay(std::uint32_t moment, std::uint32_t camera) const;
-  /// A camera's empty hall; made anew by every call.
+  /// A camera's empty hall; each call makes it again.
   [[nodiscard]] std::vector<std::uint8_t> background(std::uint32_t camera,
                                                      std::uint32_t variant) const;
   /// What the depth sensor sees; nullptr without one.
   [[nodiscard]] const RgbdTrack* rgbd() const;
-  /// A camera is being shown something: whoever draws rests for a second, for drawing and the box
+  /// A camera receives pictures: the drawing threads rest for a second, because drawing and the box
   /// would slow each other down.
   ///
   /// Threads  Any. RT: one store.

@@ -20,7 +20,7 @@ struct PosedMesh {
   float way_m = 0;  ///< the longest that any point goes meanwhile
 };
 
-/// Linear blend skinning, into memory that @p mesh brings along.
+/// Linear blend skinning, into the memory that @p mesh has.
 void poseMesh(const Body& body, const std::vector<Eigen::Affine3f>& opens,
               const std::vector<Eigen::Affine3f>& closes, PosedMesh& mesh);
 

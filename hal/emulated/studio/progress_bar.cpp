@@ -22,7 +22,7 @@ std::string progressLine(double share, const char* what) {
 ProgressBar::ProgressBar() : terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 void ProgressBar::show(double share, const char* what) {
-  most_ = std::max(most_, share);  // several threads tell, each of its own part
+  most_ = std::max(most_, share);  // several threads report, each its own part
   if (ended_) return;
   ended_ = most_ >= 1;
   const int steps = terminal_ ? 200 : 4;

@@ -97,7 +97,7 @@ std::optional<std::vector<std::byte>> SceneCache::load(const std::string& name) 
            digest(bytes) == head.digest;
   }
   if (good) return bytes;
-  std::fprintf(stderr, "kagami-emulator: studio: %s is damaged: it is deleted and drawn anew\n",
+  std::fprintf(stderr, "kagami-emulator: studio: %s is damaged: it is deleted and drawn again\n",
                path.c_str());
   fs::remove(path, error);
   return std::nullopt;

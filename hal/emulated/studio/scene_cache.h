@@ -15,8 +15,8 @@ namespace emulator::studio {
 /// that were not used for the longest time go first.
 ///
 /// Threads  One.
-/// Errors   A damaged file is told on stderr, deleted and drawn anew. When the disk is full or the
-///          limit is reached that is told once, and nothing more is stored.
+/// Errors   A damaged file is reported on stderr, deleted and drawn again. A full disk or a reached
+///          limit is reported once, and nothing more is stored.
 class SceneCache {
  public:
   /// @p key  names the scene and everything that its pictures depend on.

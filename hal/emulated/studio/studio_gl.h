@@ -15,8 +15,8 @@ namespace emulator::studio {
 /// Errors   Says in one line what is missing on this machine, and which scene needs none of it.
 [[nodiscard]] std::expected<std::unique_ptr<gl::Context>, std::string> openContext();
 
-/// What draws here, with its version: pictures are the same bit for bit only where this is.
-/// As openContext() otherwise; the renderer's threads let others go first, whoever calls.
+/// The renderer of this machine, with its version: pictures are equal bit for bit only if this is
+/// equal. Otherwise as openContext(); the renderer's threads always yield to others.
 [[nodiscard]] std::expected<std::string, std::string> rendererName();
 
 /// The calling thread does so, too.

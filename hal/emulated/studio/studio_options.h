@@ -12,7 +12,7 @@ struct StudioOptions {
   std::uint32_t cameras = 20;
   SizePx size{1280, 1024};
   std::uint64_t seed = 1;
-  double play_s = 24;         ///< length of the scene, which then begins anew
+  double play_s = 24;         ///< length of the scene, which then begins again
   double first_play_s = 3;    ///< enough to begin with
   double patience_s = 50;     ///< with less than that, if drawing it takes so long
   bool depth_sensor = false;  ///< draw what it sees, too

@@ -35,7 +35,7 @@ Matrix3d lookAt(const Vector3d& centre, const Vector3d& aim, double roll) {
   return Eigen::AngleAxisd(roll, Vector3d::UnitZ()).toRotationMatrix() * level;
 }
 
-/// Near to normal, cut off at two deviations: nobody hangs a camera half a metre off.
+/// Near to normal, cut off at two deviations: no installer hangs a camera half a metre off.
 double off(Random& random, double deviation) {
   return deviation * std::clamp(random.normal(), -2.0, 2.0);
 }

@@ -10,7 +10,7 @@
 
 namespace emulator::studio {
 
-/// A camera as it really is, beyond what calibration tells of it.
+/// A camera as it really is, beyond what a calibration knows.
 struct StudioCamera {
   CameraModel model;                        ///< with the colour gains that undo response
   std::array<double, 3> response{1, 1, 1};  ///< what sensor and amplifier make of white light

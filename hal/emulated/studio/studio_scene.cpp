@@ -18,7 +18,7 @@ std::expected<std::unique_ptr<StudioScene>, std::string> StudioScene::make(
   auto memory = rt::LockedArena::create(bytes);
   if (!memory) {
     return std::unexpected("the studio's pictures need " + std::to_string(bytes / 1'000'000) +
-                           " MB of memory that are not to be had: fewer or smaller cameras");
+                           " MB of memory, which is not available: use fewer or smaller cameras");
   }
   return std::unique_ptr<StudioScene>(new StudioScene(std::move(*play), std::move(*memory)));
 }

@@ -15,8 +15,8 @@
 
 namespace emulator::studio {
 
-/// An athlete at practice in a hall, drawn in advance; trigger 1 shows the first moment, and when
-/// the moments that are ready have passed it begins anew.
+/// An athlete at practice in a hall, drawn in advance; trigger 1 shows the first moment. After
+/// the last moment that is ready it begins again.
 ///
 /// Memory   Four pictures per camera, beside what Play holds.
 class StudioScene final : public Scene {

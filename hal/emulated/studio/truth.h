@@ -18,7 +18,7 @@ namespace emulator::studio {
 [[nodiscard]] std::expected<void, std::string> writeTruth(const std::filesystem::path& folder,
                                                           const StudioOptions& options);
 
-/// rounds.csv: from which trigger on the play began anew, and how many moments it then had.
+/// rounds.csv: the trigger at which each round of the play began, and how many moments it then had.
 [[nodiscard]] std::expected<void, std::string> writeRounds(
     const std::filesystem::path& folder, std::span<const StudioScene::Round> rounds);
 

@@ -18,7 +18,7 @@ Eigen::Vector2f unrolled(const Point& p) {
   return {std::atan2(p.x(), p.y()) * radius, p.z()};
 }
 
-/// Joins @p surface to @p body; @p hidden says which vertices nobody can see.
+/// Joins @p surface to @p body; @p hidden says which vertices are never visible.
 template <typename Hidden>
 void join(Body& body, const Polygons& surface, const std::vector<Influence>& influences,
           Material material, Hidden hidden) {

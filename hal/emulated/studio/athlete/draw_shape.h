@@ -6,8 +6,8 @@
 
 namespace emulator::studio {
 
-/// Somebody drawn by chance: height, build, sex, hair, skin and clothes as people in a sports hall
-/// have them.
+/// A person drawn at random: height, build, sex, hair, skin and clothes as people in a sports
+/// hall have them.
 [[nodiscard]] BodyShape drawShape(std::uint64_t seed);
 
 }  // namespace emulator::studio

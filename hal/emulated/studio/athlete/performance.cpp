@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 constexpr double kPass_s = 0.62;       // a partner's pass is in the air
 constexpr double kOutOfSight_s = 1.6;  // a thrown ball is shown
 
-/// A practice: the actions of one round in an order drawn by chance, a throw the first of them: of
-/// a scene that is still being drawn its beginning is shown. Nobody stretches with the ball in
+/// A practice: the actions of one round in random order. A throw comes first, because a scene that
+/// is still being drawn shows its beginning only. The athlete never stretches with the ball in
 /// hand.
 std::vector<Action> practice(Random& random) {
   using enum Action;
@@ -179,7 +179,7 @@ Performance::Performance(std::uint64_t seed, const PerformanceOptions& options)
     next.pop_back();
     const bool throws =
         action == Action::kThrow || action == Action::kSlowThrow || action == Action::kAbortedThrow;
-    // Whoever throws has a ball and stands where throws start.
+    // A throw needs the ball and begins at its own place.
     if (throws || action == Action::kCatch) {
       if ((composer.place() - options.home / scale).norm() > 0.6) {
         composer.shift(options.home / scale, options.heading);
