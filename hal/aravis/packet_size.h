@@ -14,8 +14,7 @@ namespace hal::aravis {
 struct PacketSize {
   std::uint32_t bytes = 0;     ///< the IP datagram
   std::uint32_t delay_ns = 0;  ///< between two of them, in proportion to their size
-  std::string
-      note;  ///< why it differs from the request, without the camera's name; empty: as requested
+  std::string note;            ///< why not as requested, without the camera's name; may be empty
   bool operator==(const PacketSize&) const = default;
 };
 

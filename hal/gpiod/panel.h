@@ -32,9 +32,8 @@ struct OpenedPanel {
 ///
 /// Threads  As hal::ButtonPanel.
 /// Errors   No button at all, a name that exists twice, or a line that another program holds.
-/// Missing
-///          single buttons and missing lamps are notes. While running: when a chip goes, alive()
-///          turns false, its buttons are not pressed and its lamps stay as they are.
+///          Missing single buttons and missing lamps are notes. While running: when a chip
+///          goes, alive() turns false, its buttons are not pressed and its lamps stay as they are.
 /// @p sysfs where the kernel's device tree is; another folder in tests.
 [[nodiscard]] std::expected<OpenedPanel, std::string> openButtonPanel(
     const PanelSettings& settings, const std::filesystem::path& sysfs = "/sys");
