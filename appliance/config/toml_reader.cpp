@@ -11,93 +11,41 @@
 
 #include <toml++/toml.h>
 
-#include "rt/edit_distance.h"
+#include "appliance/config/toml_text.h"
 #include "rt/printable.h"
 
 namespace appliance {
 namespace {
 
-/// Shortest form that a person writes: 16384, 0.5, 1e+300.
-std::string written(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
-
-std::string kindOf(const toml::node& node) {
-  std::ostringstream out;
-  switch (node.type()) {
-    case toml::node_type::string:
-      out << "text";
-      break;
-    case toml::node_type::integer:
-      out << "the whole number " << **node.as_integer();
-      break;
-    case toml::node_type::floating_point:
-      out << "the number " << **node.as_floating_point();
-      break;
-    case toml::node_type::boolean:
-      out << (**node.as_boolean() ? "true" : "false");
-      break;
-    case toml::node_type::array:
-      out << "an array of " << node.as_array()->size();
-      break;
-    case toml::node_type::table:
-      out << "a table";
-      break;
-    default:
-      out << "a date or time";
-      break;
-  }
-  return out.str();
-}
+/// A file of another program would fill the journal.
+constexpr std::size_t kMostWarnings = 32;
 
 std::uint32_t lineOf(const toml::node& node, std::uint32_t otherwise) {
   const std::uint32_t line = node.source().begin.line;
   return line != 0 ? line : otherwise;
 }
 
-template <class Range, class Value>
-std::string outside(const Range& range, Value lowest, Value highest) {
-  using Limits = std::numeric_limits<Value>;
-  const std::string unit = *range.unit != '\0' ? std::string(" ") + range.unit : std::string();
-  const auto number = [](Value v) {
-    if constexpr (std::is_integral_v<Value>) {
-      return std::to_string(v);
-    } else {
-      return written(v);
-    }
-  };
-  if (highest == Limits::max()) return "at least " + number(lowest) + unit;
-  if (lowest == Limits::lowest()) return "at most " + number(highest) + unit;
-  return "from " + number(lowest) + " to " + number(highest) + unit;
-}
-
 }  // namespace
-
-std::optional<std::string_view> closestWord(std::string_view word,
-                                            std::span<const std::string_view> known) {
-  std::optional<std::string_view> best;
-  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string_view candidate : known) {
-    const std::size_t distance = rt::editDistance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 struct TomlFile::Content {
   std::string name;
   toml::table root;
   std::optional<std::string> fault;
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] std::string lineFor(std::uint32_t line, const std::string& label,
+                                    const std::string& message) const {
+    return rt::printable(name + ":" + std::to_string(line) + ": " +
+                         (label.empty() ? "" : label + ": ") + message);
+  }
 
   void note(std::uint32_t line, const std::string& label, const std::string& message) {
     if (fault) return;  // the first one is the cause, later ones may follow from it
-    fault = rt::printable(name + ":" + std::to_string(line) + ": " +
-                          (label.empty() ? "" : label + ": ") + message);
+    fault = lineFor(line, label, message);
+  }
+
+  void warn(std::uint32_t line, const std::string& label, const std::string& message) {
+    if (warnings.size() < kMostWarnings) warnings.push_back(lineFor(line, label, message));
   }
 };
 
@@ -138,6 +86,10 @@ TomlTable TomlFile::root() const {
 
 const std::optional<std::string>& TomlFile::fault() const {
   return content_->fault;
+}
+
+const std::vector<std::string>& TomlFile::warnings() const {
+  return content_->warnings;
 }
 
 /// The typed side of a table: kept here so that the header names no toml++ type.
@@ -182,13 +134,11 @@ struct TomlTable::Access {
       return std::nullopt;
     }
     if (!std::isfinite(value)) {
-      note(t, node, what + " must be a finite number, not " + written(value));
+      note(t, node, what + " must be a finite number, not " + numberText(value));
       return std::nullopt;
     }
     if (value < range.lowest || value > range.highest) {
-      note(t, node,
-           what + " must be " + outside(range, range.lowest, range.highest) + ", not " +
-               written(value));
+      note(t, node, what + " must be " + rangeText(range) + ", not " + numberText(value));
       return std::nullopt;
     }
     return value;
@@ -205,9 +155,7 @@ struct TomlTable::Access {
     }
     const std::int64_t value = whole->get();
     if (value < range.lowest || value > range.highest) {
-      note(t, node,
-           key + " must be " + outside(range, range.lowest, range.highest) + ", not " +
-               std::to_string(value));
+      note(t, node, key + " must be " + rangeText(range) + ", not " + std::to_string(value));
       return std::nullopt;
     }
     return value;
@@ -250,6 +198,11 @@ struct TomlTable::Access {
     return true;
   }
 
+  /// Reports every key that is not one of @p keys, as (line, message).
+  template <class Report>
+  static void eachUnknown(const TomlTable& t, std::span<const std::string_view> keys,
+                          const std::string& otherwise, Report report);
+
   static TomlTable child(const TomlTable& t, std::string_view key, const toml::table* table) {
     const std::string path = "[" + std::string(key) + "]";
     return {t.content_, table, table != nullptr ? lineOf(*table, t.line_) : t.line_,
@@ -261,19 +214,35 @@ TomlTable::TomlTable(TomlFile::Content* content, const void* node, std::uint32_t
                      std::string label)
     : content_(content), node_(node), line_(line), label_(std::move(label)) {}
 
-void TomlTable::allowKeys(std::span<const std::string_view> keys) const {
-  if (node_ == nullptr) return;
-  for (const auto& [key, node] : *static_cast<const toml::table*>(node_)) {
+template <class Report>
+void TomlTable::Access::eachUnknown(const TomlTable& t, std::span<const std::string_view> keys,
+                                    const std::string& otherwise, Report report) {
+  if (t.node_ == nullptr) return;
+  for (const auto& [key, node] : *static_cast<const toml::table*>(t.node_)) {
     if (std::ranges::find(keys, key.str()) != keys.end()) continue;
     const auto line = key.source().begin.line;
     std::string message = "unknown key \"" + std::string(key.str()) + "\"; ";
     if (const auto suggestion = closestWord(key.str(), keys)) {
       message += "did you mean \"" + std::string(*suggestion) + "\"?";
     } else {
-      message += "remove it, or see the manual for the keys that exist";
+      message += otherwise;
     }
-    content_->note(line != 0 ? line : line_, label_, message);
+    report(line != 0 ? line : t.line_, message);
   }
+}
+
+void TomlTable::allowKeys(std::span<const std::string_view> keys) const {
+  Access::eachUnknown(*this, keys, "remove it, or see the manual for the keys that exist",
+                      [this](std::uint32_t line, const std::string& message) {
+                        content_->note(line, label_, message);
+                      });
+}
+
+void TomlTable::warnUnknownKeys(std::span<const std::string_view> keys) const {
+  Access::eachUnknown(*this, keys, "it is ignored; another version may know it",
+                      [this](std::uint32_t line, const std::string& message) {
+                        content_->warn(line, label_, message);
+                      });
 }
 
 bool TomlTable::has(std::string_view key) const {
@@ -342,8 +311,8 @@ std::vector<std::int64_t> TomlTable::integerListOr(std::string_view key,
   return Access::readList(*this, *node, key, std::move(fallback), range, &Access::readInteger);
 }
 
-std::vector<double> TomlTable::matrix(std::string_view key, std::size_t rows,
-                                      std::size_t columns) const {
+std::vector<double> TomlTable::matrix(std::string_view key, std::size_t rows, std::size_t columns,
+                                      const NumberRange& range) const {
   std::vector<double> zeros(rows * columns, 0);
   const toml::node* node = Access::demand(*this, key);
   if (node == nullptr) return zeros;
@@ -357,7 +326,7 @@ std::vector<double> TomlTable::matrix(std::string_view key, std::size_t rows,
   std::vector<double> out;
   for (std::size_t row = 0; row < rows; ++row) {
     const std::string what = std::string(key) + "[" + std::to_string(row) + "]";
-    if (!Access::readNumbers(*this, *array->get(row), what, columns, {}, out)) return zeros;
+    if (!Access::readNumbers(*this, *array->get(row), what, columns, range, out)) return zeros;
   }
   return out;
 }
@@ -401,6 +370,11 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
 void TomlTable::fail(std::string_view key, const std::string& message) const {
   const toml::node* node = Access::find(*this, key);
   content_->note(node != nullptr ? lineOf(*node, line_) : line_, label_, message);
+}
+
+void TomlTable::warn(std::string_view key, const std::string& message) const {
+  const toml::node* node = Access::find(*this, key);
+  content_->warn(node != nullptr ? lineOf(*node, line_) : line_, label_, message);
 }
 
 }  // namespace appliance

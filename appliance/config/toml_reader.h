@@ -34,8 +34,9 @@ struct IntegerRange {
 [[nodiscard]] std::optional<std::string_view> closestWord(std::string_view word,
                                                           std::span<const std::string_view> known);
 
-/// A TOML file that is read strictly: what is missing, misspelt or out of range is an
-/// error with file and line, never a silent default.
+/// A TOML file that is read strictly: what is missing or out of range is an error with file and
+/// line, never a silent default. The reader decides whether an unknown key is an error or a
+/// warning.
 ///
 /// Read every value first and ask error() once at the end: getters never fail loudly, they
 /// note the first fault and return a harmless value.
@@ -65,6 +66,8 @@ class TomlFile {
   [[nodiscard]] TomlTable root() const;
   /// The first thing found wrong since parsing, as one line.
   [[nodiscard]] const std::optional<std::string>& fault() const;
+  /// What was ignored since parsing, one line each: `FILE:LINE: [table: ]unknown key ...`.
+  [[nodiscard]] const std::vector<std::string>& warnings() const;
 
  private:
   friend class TomlTable;
@@ -84,6 +87,11 @@ class TomlTable {
   void allowKeys(std::span<const std::string_view> keys) const;
   void allowKeys(std::initializer_list<std::string_view> keys) const {
     allowKeys(std::span(keys.begin(), keys.size()));
+  }
+  /// Every other key is ignored with a warning: a file of a newer version still starts the box.
+  void warnUnknownKeys(std::span<const std::string_view> keys) const;
+  void warnUnknownKeys(std::initializer_list<std::string_view> keys) const {
+    warnUnknownKeys(std::span(keys.begin(), keys.size()));
   }
 
   [[nodiscard]] bool has(std::string_view key) const;
@@ -116,7 +124,8 @@ class TomlTable {
                                                         const IntegerRange& range = {}) const;
   /// @p rows arrays of @p columns finite numbers, row-major; zeros after a fault.
   [[nodiscard]] std::vector<double> matrix(std::string_view key, std::size_t rows,
-                                           std::size_t columns) const;
+                                           std::size_t columns,
+                                           const NumberRange& range = {}) const;
   [[nodiscard]] std::vector<std::string> textsOr(std::string_view key,
                                                  std::vector<std::string> fallback) const;
 
@@ -127,6 +136,8 @@ class TomlTable {
 
   /// Notes a fault found by the caller, at the line of @p key (of the table when absent).
   void fail(std::string_view key, const std::string& message) const;
+  /// The same as a warning: reading goes on.
+  void warn(std::string_view key, const std::string& message) const;
 
  private:
   friend class TomlFile;

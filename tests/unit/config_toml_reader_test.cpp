@@ -56,6 +56,28 @@ TEST(TomlReader, GivesTheFallbackOnlyWhereTheKeyIsAbsent) {
   EXPECT_EQ(file.fault(), std::nullopt);
 }
 
+TEST(TomlReader, WarnsOfUnknownKeysAndReadsOn) {
+  const TomlFile file = parsed("name = \"arc\"\nrat_hz = 40\n[sub]\nbanana = 1\n");
+  const auto root = file.root();
+  root.warnUnknownKeys({"name", "rate_hz", "sub"});
+  root.table("sub").warnUnknownKeys({"depth"});
+  EXPECT_EQ(root.text("name"), "arc");
+  EXPECT_EQ(file.fault(), std::nullopt);
+  EXPECT_THAT(file.warnings(),
+              testing::ElementsAre(
+                  "box.toml:2: unknown key \"rat_hz\"; did you mean \"rate_hz\"?",
+                  "box.toml:4: [sub]: unknown key \"banana\"; it is ignored; another version may "
+                  "know it"));
+}
+
+TEST(TomlReader, KeepsNoMoreWarningsThanAJournalCanBear) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "key" + std::to_string(i) + " = 1\n";
+  const TomlFile file = parsed(text);
+  file.root().warnUnknownKeys({"name"});
+  EXPECT_EQ(file.warnings().size(), 32u);
+}
+
 TEST(TomlReader, NamesFileLineAndMissingKey) {
   EXPECT_EQ(faultOf("\n[sub]\n", [](auto root) { (void)root.table("sub").number("rate_hz"); }),
             "box.toml:2: [sub]: the key \"rate_hz\" is missing; add it");
