@@ -5,13 +5,13 @@
 #include <thread>
 #include <utility>
 
-#include "appliance/camera_watch.h"
+#include "appliance/capture/camera_status.h"
 #include "appliance/capture/genlock_text.h"
+#include "appliance/capture/trigger_wiring.h"
+#include "appliance/config/durations.h"
 #include "appliance/depth/depth_settings.h"
-#include "appliance/device_settings.h"
 #include "appliance/panel/panel_settings.h"
-#include "appliance/process_facts.h"
-#include "appliance/trigger_wiring.h"
+#include "appliance/trace/process_facts.h"
 #include "hal/backends.h"
 
 namespace appliance {
@@ -35,6 +35,12 @@ std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available
                 layout.sets, static_cast<double>(layout.bytes()) * 1e-9,
                 static_cast<double>(available) * 1e-9);
   return line;
+}
+
+std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
+  std::vector<rt::Nanoseconds> ladder;
+  for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
+  return ladder;
 }
 
 }  // namespace
@@ -191,7 +197,7 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
         *panel_,
         [this](const PanelCommand& given) {
           (void)render_loop_->panelCommands().tryPush({given.command, given.cause});
-          board_.frame_ready.ring();
+          board_.wake_render.ring();
         },
         [this] { return render_loop_->mode(); });
     started = startThread(panel_thread_, "panel", realtime.panel,
@@ -220,7 +226,7 @@ std::expected<void, std::string> Appliance::startThreads(const hal::Display& dis
 }
 
 std::expected<void, std::string> Appliance::startThread(rt::Thread& thread, const char* name,
-                                                        const Config::ThreadSchedule& how,
+                                                        const ThreadSchedule& how,
                                                         std::function<void(std::stop_token)> body) {
   auto started = rt::Thread::start(threadConfig(name, how), std::move(body));
   if (!started) {
@@ -254,7 +260,7 @@ void Appliance::stopPipeline() {
   depth_thread_ = {};
   if (render_thread_.joinable()) {
     render_thread_.requestStop();
-    board_.frame_ready.ring();
+    board_.wake_render.ring();
   }
   render_thread_ = {};
 }
@@ -266,20 +272,20 @@ std::expected<void, std::string> Appliance::stop() {
 
 bool Appliance::command(const Command& command) {
   const bool taken = render_loop_->controlCommands().tryPush({command, rt::now()});
-  board_.frame_ready.ring();
+  board_.wake_render.ring();
   return taken;
 }
 
 bool Appliance::setTarget(const std::array<double, 3>& target_m) {
   target_m_ = target_m;
   target_.set({target_m[0], target_m[1], target_m[2]});
-  board_.frame_ready.ring();
+  board_.wake_render.ring();
   return true;
 }
 
 void Appliance::setScreenReleased(bool released) {
   render_loop_->setScreenReleased(released);
-  board_.frame_ready.ring();
+  board_.wake_render.ring();
 }
 
 Status Appliance::status() const {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "appliance/camera_array.h"
+#include "appliance/capture/camera_array.h"
 #include "appliance/capture/collector.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/loopback.h"
@@ -71,7 +71,7 @@ class Appliance final : public ControlSink, public StatusSource {
   void makeLoops(hal::Display& display, PictureObserver* observer);
   [[nodiscard]] std::expected<void, std::string> startThreads(const hal::Display& display);
   [[nodiscard]] std::expected<void, std::string> startThread(rt::Thread& thread, const char* name,
-                                                             const Config::ThreadSchedule& how,
+                                                             const ThreadSchedule& how,
                                                              std::function<void(std::stop_token)>);
   void stopPipeline();
   [[nodiscard]] RunRecord runRecord(const hal::Display& display) const;

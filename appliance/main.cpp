@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <expected>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,18 +14,17 @@
 #include <systemd/sd-daemon.h>
 
 #include "appliance/appliance.h"
-#include "appliance/camera_watch.h"
+#include "appliance/capture/trigger_wiring.h"
 #include "appliance/config/config.h"
 #include "appliance/control/control_server.h"
-#include "appliance/degraded_watch.h"
-#include "appliance/genlock_watch.h"
-#include "appliance/geometry/rig_file.h"
-#include "appliance/light/site_light.h"
-#include "appliance/log.h"
-#include "appliance/network/site_plan.h"
+#include "appliance/journal/camera_watch.h"
+#include "appliance/journal/degraded_watch.h"
+#include "appliance/journal/genlock_watch.h"
+#include "appliance/journal/log.h"
+#include "appliance/journal/screen_watch.h"
 #include "appliance/picture_recorder.h"
-#include "appliance/startup_checks.h"
-#include "appliance/trigger_wiring.h"
+#include "appliance/site/site.h"
+#include "appliance/site/site_light.h"
 #include "rt/clock.h"
 #include "rt/stop_signals.h"
 #include "ui-kms/draw_workers.h"
@@ -44,28 +42,6 @@ struct Options {
   bool check_config = false;
   bool release_lines = false;
 };
-
-struct Site {
-  Config config;
-  Rig rig;
-  std::vector<std::string> degraded;  // what is known already not to be as asked
-};
-
-std::expected<Site, std::string> loadSite(const Options& options) {
-  auto config = loadConfig(options.config_file, options.overrides);
-  if (!config) return std::unexpected(config.error());
-  auto rig = loadRig(config->rig.file);
-  if (!rig) return std::unexpected(rig.error());
-  if (!options.target_m.empty()) {
-    rig->target_m = {options.target_m[0], options.target_m[1], options.target_m[2]};
-  }
-  if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
-  auto fitted = fitToNetwork(std::move(*config), *rig);
-  if (!fitted) return std::unexpected(fitted.error());
-  Site site{std::move(fitted->config), std::move(*rig), {}};
-  if (!fitted->lowered.empty()) site.degraded.push_back(std::move(fitted->lowered));
-  return site;
-}
 
 struct Screen {
   std::unique_ptr<hal::Display> display;
@@ -124,22 +100,7 @@ std::expected<Screen, std::string> makeScreen(const Config& config, const Rig& r
   return makeOffscreen(config.display, rig, display.error());
 }
 
-/// What happens to the screen, a line at each change.
-class ScreenWatch {
- public:
-  [[nodiscard]] std::optional<std::string> look(const Status& status) {
-    std::string line = "screen: " + std::string(nameOf(status.screen));
-    if (!status.screen_message.empty()) line += ": " + status.screen_message;
-    if (line == last_) return std::nullopt;
-    last_ = line;
-    return line;
-  }
-
- private:
-  std::string last_ = "screen: showing";
-};
-
-bool scheduleDrawWorkers(const Config::ThreadSchedule& how) {
+bool scheduleDrawWorkers(const ThreadSchedule& how) {
   return ui::scheduleDrawWorkers(
       {.policy = how.policy, .priority = how.priority, .cpus = how.cpus});
 }
@@ -255,7 +216,7 @@ int main(int argc, char** argv) {
     return released ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   rt::StopSignals stop;  // before any thread
-  const auto site = loadSite(options);
+  const auto site = loadSite(options.config_file, options.overrides, options.target_m);
   if (!site) {
     logError(site.error());
     return EXIT_FAILURE;

@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "appliance/trace/trace_file.h"
-
 namespace appliance {
 namespace {
 

@@ -7,7 +7,8 @@
 #include <string>
 
 #include "appliance/config/config.h"
-#include "appliance/render/render_loop.h"
+#include "appliance/geometry/rig.h"
+#include "appliance/render/picture_observer.h"
 #include "ui-kms/picture_source.h"
 #include "ui-kms/recorder.h"
 

@@ -12,8 +12,6 @@
 
 namespace hal {
 
-enum class PixelFormat : std::uint8_t { kBayerRG8, kBayerGB8, kBayerGR8, kBayerBG8, kMono8 };
-
 enum class FrameStatus : std::uint8_t {
   kComplete,    ///< every packet arrived; only these are ever shown
   kIncomplete,  ///< packets missing after all resends

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hal/camera.h"
+#include "hal/pixel_format.h"
 #include "hal/resend_policy.h"
 
 namespace hal {
@@ -38,22 +38,5 @@ struct CameraProfile {
   std::vector<ModelResendPolicy> resend_by_model;  ///< for the models that need another one
   double link_mbps = 0;  ///< what the plan counts on; a slower link is told. 0: any
 };
-
-/// GenICam's name of the format.
-[[nodiscard]] constexpr const char* genicamName(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kBayerRG8:
-      return "BayerRG8";
-    case PixelFormat::kBayerGB8:
-      return "BayerGB8";
-    case PixelFormat::kBayerGR8:
-      return "BayerGR8";
-    case PixelFormat::kBayerBG8:
-      return "BayerBG8";
-    case PixelFormat::kMono8:
-      return "Mono8";
-  }
-  return "";
-}
 
 }  // namespace hal

@@ -6,8 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "hal/camera.h"
 #include "hal/display_timing.h"
+#include "hal/lens.h"
+#include "hal/pixel_format.h"
 #include "rt/clock.h"
 #include "rt/dma_buf.h"
 #include "rt/result.h"
@@ -21,15 +22,6 @@ struct SourceImage {
   std::uint32_t height_px = 0;
   PixelFormat format = PixelFormat::kBayerRG8;
   rt::DmaBufPart dma_buf;  ///< the same bytes for a GPU, if valid; they hold for render(), too
-};
-
-/// Pinhole and Brown-Conrady distortion in OpenCV's convention (k1, k2, p1, p2, k3).
-struct Lens {
-  double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
-  std::array<double, 5> distortion{};
-  /// Undistorted radius (in units of the focal length) up to which the distortion
-  /// model is monotonic; beyond it there is border, never a folded picture.
-  double max_radius = 0;
 };
 
 /// Everything the renderer needs to draw one view: pure data, made by the warp planner.

@@ -16,7 +16,7 @@
 #include "appliance/capture/collector.h"
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
-#include "appliance/network/large_packets.h"
+#include "appliance/capture/large_packets.h"
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "rt/thread.h"

@@ -82,7 +82,7 @@ std::uint32_t Collector::onFrame(const hal::FrameArrival& arrival) RT_SAFE {
   if (trigger != 0) {
     count(stored_);
     last_stored_ns_.store(rt::toNs(frame_ready), std::memory_order_relaxed);
-    if (board_.shown_camera.load(std::memory_order_relaxed) == camera_) board_.frame_ready.ring();
+    if (board_.shown_camera.load(std::memory_order_relaxed) == camera_) board_.wake_render.ring();
   }
 
   if (trace_ != nullptr) {

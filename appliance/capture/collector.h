@@ -4,27 +4,15 @@
 #include <cstdint>
 
 #include "appliance/capture/association.h"
-#include "appliance/capture/edge_board.h"
+#include "appliance/capture/capture_board.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/frame_namer.h"
-#include "appliance/capture/frame_set.h"
-#include "appliance/capture/genlock_board.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/camera.h"
-#include "rt/doorbell.h"
+#include "rt/annotations.h"
+#include "rt/clock.h"
 
 namespace appliance {
-
-/// What every collector of a rig shares.
-struct CaptureBoard {
-  explicit CaptureBoard(std::uint32_t cameras) : sets(cameras) {}
-
-  EdgeBoard edges;
-  GenlockBoard genlock;
-  FrameSetBoard sets;
-  std::atomic<std::uint32_t> shown_camera{0};  ///< whose frames ring the bell; by the render thread
-  rt::Doorbell frame_ready;                    ///< wakes the render thread
-};
 
 /// What one camera delivered so far. Every frame that came is in exactly one of stored,
 /// incomplete, wrong_size, no_edge, repeated and unsettled.

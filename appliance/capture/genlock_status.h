@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "rt/clock.h"
 
@@ -21,6 +24,19 @@ enum class GenlockReason : std::uint8_t {
   kNoFrames,   ///< too few frames were shown to know how long they take
   kPhaseLost,  ///< the vblanks are not where they were expected
 };
+
+/// As the trace and the control interface write them, in the order of the enumerations.
+inline constexpr std::array<std::string_view, 4> kGenlockStateNames = {"off", "free_running",
+                                                                       "acquiring", "locked"};
+inline constexpr std::array<std::string_view, 5> kGenlockReasonNames = {
+    "none", "no_vblanks", "ratio", "no_frames", "phase_lost"};
+
+[[nodiscard]] constexpr std::string_view nameOf(GenlockState state) {
+  return kGenlockStateNames[static_cast<std::size_t>(state)];
+}
+[[nodiscard]] constexpr std::string_view nameOf(GenlockReason reason) {
+  return kGenlockReasonNames[static_cast<std::size_t>(reason)];
+}
 
 struct GenlockStatus {
   GenlockState state = GenlockState::kOff;

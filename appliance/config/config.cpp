@@ -239,7 +239,7 @@ void readRecord(Section section, Config::Record& record) {
   section.end();
 }
 
-void readSchedule(Section section, Config::ThreadSchedule& schedule) {
+void readSchedule(Section section, ThreadSchedule& schedule) {
   section.choice("policy", schedule.policy, kPolicies);
   section.integer("priority", schedule.priority, {0, 99});
   const std::vector<std::int64_t> cpus = section.named("cpus").integerListOr(

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "hal/camera.h"
+#include "appliance/config/thread_schedule.h"
+#include "hal/pixel_format.h"
 #include "hal/resend_policy.h"
-#include "rt/thread.h"
 
 namespace appliance {
 
@@ -129,14 +129,6 @@ struct Config {
     double video_hz = 20;
     std::uint32_t video_width_px = 640;
     bool operator==(const Record&) const = default;
-  };
-
-  /// How one thread, or all receive threads, shall run; rt::ThreadConfig less its name.
-  struct ThreadSchedule {
-    rt::SchedPolicy policy = rt::SchedPolicy::kOther;
-    int priority = 0;
-    std::vector<int> cpus;  ///< empty: any
-    bool operator==(const ThreadSchedule&) const = default;
   };
 
   struct Realtime {

@@ -8,7 +8,6 @@
 
 #include "appliance/control/bus.h"
 #include "appliance/control/control_requests.h"
-#include "appliance/trace/trace_file.h"
 
 namespace appliance {
 

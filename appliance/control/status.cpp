@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "appliance/trace/trace_file.h"
-
 namespace appliance {
 
 std::string_view nameOf(hal::ScreenState state) {

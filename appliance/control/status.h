@@ -6,23 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "appliance/capture/camera_state.h"
+#include "appliance/capture/camera_status.h"
 #include "appliance/capture/genlock_status.h"
 #include "appliance/director/command.h"
 #include "appliance/director/shot.h"
 #include "hal/display.h"
 
 namespace appliance {
-
-struct CameraStatus {
-  std::string name;  ///< as in the rig file
-  CameraState state = CameraState::kConnecting;
-  CameraTrouble trouble = CameraTrouble::kNone;
-  std::string reason;  ///< what is wrong and what to do; empty: nothing
-  std::uint64_t frames_lost = 0;
-  std::uint64_t frames_away = 0;  ///< not taken because the camera was lost
-  std::uint64_t frames_incomplete = 0;
-};
 
 /// The running daemon in one look. Views count from 0 here, from 1 for people and on the bus.
 /// Texts are UTF-8: D-Bus refuses others.

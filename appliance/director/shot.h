@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "rt/clock.h"
@@ -13,6 +16,14 @@ enum class Mode : std::uint8_t {
   kFrozen,
   kSweep,  ///< frozen, while the view walks along the arc
 };
+
+/// As the trace and the control interface write them, in the order of Mode.
+inline constexpr std::array<std::string_view, 4> kModeNames = {"live", "delayed", "frozen",
+                                                               "sweep"};
+
+[[nodiscard]] constexpr std::string_view nameOf(Mode mode) {
+  return kModeNames[static_cast<std::size_t>(mode)];
+}
 
 /// Why another view than the wanted one is shown.
 enum class Substitute : std::uint8_t {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "hal/display.h"
+#include "hal/lens.h"
 #include "rt/annotations.h"
 
 namespace appliance {

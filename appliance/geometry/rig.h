@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "hal/display.h"
+#include "hal/lens.h"
 
 namespace appliance {
 

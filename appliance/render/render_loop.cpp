@@ -39,7 +39,7 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
     const rt::Timestamp period_later = rt::now() + parameters_.trigger_period;
-    (void)parts_.board.frame_ready.waitUntil(
+    (void)parts_.board.wake_render.waitUntil(
         std::min(parts_.display.nextCall().value_or(period_later), period_later));
     rt::sleepUntil(allowance_.nextBegin());
     turn();

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "appliance/capture/collector.h"
+#include "appliance/capture/capture_board.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/director/director.h"
 #include "appliance/geometry/homography.h"
@@ -17,6 +17,7 @@
 #include "appliance/render/command_queue.h"
 #include "appliance/render/history_views.h"
 #include "appliance/render/locked_vblanks.h"
+#include "appliance/render/picture_observer.h"
 #include "appliance/render/render_allowance.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
@@ -24,20 +25,6 @@
 #include "rt/latest_value.h"
 
 namespace appliance {
-
-/// One picture that was just handed to the display.
-struct ShownPicture {
-  const PictureRecord& record;
-  const hal::WarpPlan* plan;  ///< none: an empty picture
-};
-
-/// Somebody who looks at every picture, a recorder say.
-class PictureObserver {
- public:
-  virtual ~PictureObserver() = default;
-  /// On the render thread, after the commit: its time is the next picture's.
-  virtual void onPicture(const ShownPicture& picture) noexcept = 0;
-};
 
 /// What the render thread tells about itself.
 struct RenderStatus {
@@ -57,7 +44,7 @@ struct RenderParts {
   TargetTrack& target;
   hal::Display& display;
   TraceProducer* trace;       ///< none: not traced
-  PictureObserver* observer;  ///< none: nobody looks
+  PictureObserver* observer;  ///< none: no observer
 };
 
 struct RenderParameters {
@@ -83,12 +70,12 @@ class RenderLoop {
   void run(const std::stop_token& stop) noexcept;
 
   /// Where the panel's and the control interface's threads put their commands; ring
-  /// CaptureBoard::frame_ready afterwards.
+  /// CaptureBoard::wake_render afterwards.
   [[nodiscard]] CommandQueue& panelCommands() { return panel_commands_; }
   [[nodiscard]] CommandQueue& controlCommands() { return control_commands_; }
 
   /// Gives the screen to whom wants it, or takes it back; the last call counts. Any thread; ring
-  /// CaptureBoard::frame_ready afterwards.
+  /// CaptureBoard::wake_render afterwards.
   void setScreenReleased(bool released) noexcept {
     screen_released_.store(released, std::memory_order_relaxed);
   }

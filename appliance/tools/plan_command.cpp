@@ -8,9 +8,9 @@
 #include <CLI/CLI.hpp>
 
 #include "appliance/geometry/rig_file.h"
-#include "appliance/light/site_light.h"
-#include "appliance/network/site_plan.h"
 #include "appliance/network/uplink_text.h"
+#include "appliance/site/site_light.h"
+#include "appliance/site/site_plan.h"
 #include "appliance/tools/commands.h"
 
 namespace appliance {

@@ -22,13 +22,8 @@ using nlohmann::json;
 /// 73 years: what is later is no instant of a run, and sums of instants stay far from overflow.
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;
 
-constexpr std::array<std::string_view, 4> kModeNames = {"live", "delayed", "frozen", "sweep"};
 constexpr std::array<std::string_view, 4> kStatusNames = {"complete", "incomplete", "wrong_size",
                                                           "aborted"};
-constexpr std::array<std::string_view, 4> kGenlockStates = {"off", "free_running", "acquiring",
-                                                            "locked"};
-constexpr std::array<std::string_view, 5> kGenlockReasons = {"none", "no_vblanks", "ratio",
-                                                             "no_frames", "phase_lost"};
 
 template <class Record>
 constexpr const char* kKind = nullptr;
@@ -159,10 +154,10 @@ struct JsonReader {
     return true;
   }
   static bool take(const json& from, GenlockState& to) {
-    return takeName(from, kGenlockStates, to);
+    return takeName(from, kGenlockStateNames, to);
   }
   static bool take(const json& from, GenlockReason& to) {
-    return takeName(from, kGenlockReasons, to);
+    return takeName(from, kGenlockReasonNames, to);
   }
   static bool take(const json& from, Mode& to) { return takeName(from, kModeNames, to); }
   static bool take(const json& from, hal::FrameStatus& to) {
@@ -230,20 +225,8 @@ std::string take(TraceLine line, bool first, Trace& trace) {
 
 }  // namespace
 
-std::string_view nameOf(Mode mode) {
-  return kModeNames[static_cast<std::size_t>(mode)];
-}
-
 std::string_view nameOf(hal::FrameStatus status) {
   return kStatusNames[static_cast<std::size_t>(status)];
-}
-
-std::string_view nameOf(GenlockState state) {
-  return kGenlockStates[static_cast<std::size_t>(state)];
-}
-
-std::string_view nameOf(GenlockReason reason) {
-  return kGenlockReasons[static_cast<std::size_t>(reason)];
 }
 
 std::string toLine(const RunRecord& run) {

@@ -49,9 +49,6 @@ void appendLine(std::string& text, const TraceRecord& record);
                                                           const std::string& name);
 [[nodiscard]] std::expected<Trace, std::string> readTraceFile(const std::string& path);
 
-[[nodiscard]] std::string_view nameOf(Mode mode);
 [[nodiscard]] std::string_view nameOf(hal::FrameStatus status);
-[[nodiscard]] std::string_view nameOf(GenlockState state);
-[[nodiscard]] std::string_view nameOf(GenlockReason reason);
 
 }  // namespace appliance

@@ -5,7 +5,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "hal/camera.h"
+#include "hal/pixel_format.h"
 
 /// A picture in linear light that tests every part of the warp: smooth shading that reaches into
 /// the shadows, a texture of waves in all directions, and edges.

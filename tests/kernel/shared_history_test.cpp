@@ -182,7 +182,7 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
     frames.slots()[slot].front() = static_cast<std::byte>(40 + trigger);
     board.edges.post(trigger, rt::now());
     slot = frames.store(slot, {.trigger = trigger});
-    board.frame_ready.ring();
+    board.wake_render.ring();
   }
   const rt::Timestamp patience = rt::now() + std::chrono::seconds(20);
   while (display.firstByteShown() != 42 && rt::now() < patience) {

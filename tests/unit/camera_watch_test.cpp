@@ -1,9 +1,9 @@
-#include "appliance/camera_watch.h"
+#include "appliance/journal/camera_watch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "appliance/degraded_watch.h"
+#include "appliance/journal/degraded_watch.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "appliance/genlock_watch.h"
+#include "appliance/journal/genlock_watch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "appliance/network/large_packets.h"
+#include "appliance/capture/large_packets.h"
 
 #include <gtest/gtest.h>
 

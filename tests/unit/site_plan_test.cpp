@@ -1,4 +1,4 @@
-#include "appliance/network/site_plan.h"
+#include "appliance/site/site_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

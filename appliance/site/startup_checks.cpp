@@ -1,4 +1,4 @@
-#include "appliance/startup_checks.h"
+#include "appliance/site/startup_checks.h"
 
 #include <cstdio>
 

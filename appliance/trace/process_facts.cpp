@@ -1,4 +1,4 @@
-#include "appliance/process_facts.h"
+#include "appliance/trace/process_facts.h"
 
 #include <cstdio>
 

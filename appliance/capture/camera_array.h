@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "appliance/capture/association.h"
+#include "appliance/capture/camera_status.h"
 #include "appliance/capture/camera_supervisor.h"
+#include "appliance/capture/capture_board.h"
 #include "appliance/capture/collector.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/config/config.h"
-#include "appliance/control/status.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/trace/trace_writer.h"
 

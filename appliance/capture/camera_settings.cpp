@@ -1,24 +1,10 @@
-#include "appliance/device_settings.h"
+#include "appliance/capture/camera_settings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 namespace appliance {
-
-rt::Nanoseconds periodOf(double rate_hz) {
-  return rt::Nanoseconds{std::llround(1e9 / rate_hz)};
-}
-
-rt::Nanoseconds microseconds(double us) {
-  return rt::Nanoseconds{std::llround(us * 1e3)};
-}
-
-double commonDelay_us(const Config::Cameras& config) {
-  return config.opto_delay_us.empty() ? 0 : std::ranges::max(config.opto_delay_us);
-}
-
 namespace {
 
 double triggerDelay_us(const Config::Cameras& config, std::size_t camera) {
@@ -38,6 +24,10 @@ hal::ResendPolicy policyOf(hal::ResendPolicy policy, double rate_hz) {
 }
 
 }  // namespace
+
+double commonDelay_us(const Config::Cameras& config) {
+  return config.opto_delay_us.empty() ? 0 : std::ranges::max(config.opto_delay_us);
+}
 
 hal::CameraProfile profileOf(const Config& site, const RigCamera& camera, std::size_t index) {
   const Config::Cameras& config = site.cameras;
@@ -60,17 +50,6 @@ hal::CameraProfile profileOf(const Config& site, const RigCamera& camera, std::s
           .resend = policyOf(site.resend.policy, site.trigger.rate_hz),
           .resend_by_model = std::move(by_model),
           .link_mbps = 1000 * site.network.camera_link_gbps};
-}
-
-std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
-  std::vector<rt::Nanoseconds> ladder;
-  for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
-  return ladder;
-}
-
-rt::ThreadConfig threadConfig(std::string name, const Config::ThreadSchedule& how) {
-  return {
-      .name = std::move(name), .policy = how.policy, .priority = how.priority, .cpus = how.cpus};
 }
 
 std::string receiveThreadName(std::size_t camera) {

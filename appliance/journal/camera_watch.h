@@ -10,9 +10,6 @@
 
 namespace appliance {
 
-/// "camera 7 (cam07): ", as everybody who tells of a camera begins. @p camera: from 0.
-[[nodiscard]] std::string cameraTitle(std::size_t camera, const std::string& name);
-
 /// Notices cameras that fall silent, fail in part or come back, and frames that were lost, a line
 /// each. A camera's first lost frames are told at once, later ones summed: a bad cable loses some
 /// at every look.

@@ -1,12 +1,8 @@
-#include "appliance/camera_watch.h"
+#include "appliance/journal/camera_watch.h"
 
 #include <utility>
 
 namespace appliance {
-
-std::string cameraTitle(std::size_t camera, const std::string& name) {
-  return "camera " + std::to_string(camera + 1) + " (" + name + "): ";
-}
 
 std::vector<std::string> CameraWatch::look(const Status& status, rt::Timestamp now) {
   std::vector<std::string> lines;

@@ -1,4 +1,4 @@
-#include "appliance/log.h"
+#include "appliance/journal/log.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,10 +1,12 @@
-#include "appliance/camera_array.h"
+#include "appliance/capture/camera_array.h"
 
 #include <chrono>
 #include <cstdint>
 #include <utility>
 
-#include "appliance/device_settings.h"
+#include "appliance/capture/camera_settings.h"
+#include "appliance/config/durations.h"
+#include "appliance/config/thread_schedule.h"
 #include "appliance/network/network_plan.h"
 #include "hal/backends.h"
 

@@ -1,4 +1,4 @@
-#include "appliance/trigger_wiring.h"
+#include "appliance/capture/trigger_wiring.h"
 
 #include <cstdint>
 

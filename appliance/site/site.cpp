@@ -1,0 +1,27 @@
+#include "appliance/site/site.h"
+
+#include <utility>
+
+#include "appliance/geometry/rig_file.h"
+#include "appliance/site/site_plan.h"
+#include "appliance/site/startup_checks.h"
+
+namespace appliance {
+
+std::expected<Site, std::string> loadSite(const std::string& config_file,
+                                          const std::vector<std::string>& overrides,
+                                          const std::vector<double>& target_m) {
+  auto config = loadConfig(config_file, overrides);
+  if (!config) return std::unexpected(config.error());
+  auto rig = loadRig(config->rig.file);
+  if (!rig) return std::unexpected(rig.error());
+  if (!target_m.empty()) rig->target_m = {target_m[0], target_m[1], target_m[2]};
+  if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
+  auto fitted = fitToNetwork(std::move(*config), *rig);
+  if (!fitted) return std::unexpected(fitted.error());
+  Site site{std::move(fitted->config), std::move(*rig), {}};
+  if (!fitted->lowered.empty()) site.degraded.push_back(std::move(fitted->lowered));
+  return site;
+}
+
+}  // namespace appliance
