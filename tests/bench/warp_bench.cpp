@@ -125,7 +125,8 @@ struct OpenCvWarp {
   }
   void demosaic() { cv::cvtColor(mosaic, rgb, cv::COLOR_BayerBG2RGB); }
 
-  /// Undistorted, by maps that are made anew for each picture: each has its own homography.
+  /// Undistorted, by maps that are made again for each picture, because each has its own
+  /// homography.
   void remap() {
     // Its new camera matrix times rotation, inverted, is the way from display to ray.
     cv::initUndistortRectifyMap(camera, distortion, cv::noArray(), to_camera.inv() * camera,

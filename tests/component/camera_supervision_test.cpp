@@ -43,7 +43,7 @@ sockaddr_in addressOf(const std::string& address, std::uint16_t port) {
   return socket_address;
 }
 
-/// The far side of the wires, with the port through which its cameras are told to fail.
+/// The far side of the wires, with the port that commands its cameras to fail.
 class Rig {
  public:
   explicit Rig(const test::TemporaryFolder& folder)
@@ -183,7 +183,7 @@ TEST(CameraSupervision, StartsWithoutAnyCameraAndTakesThemWhenTheyCome) {
   daemon.stop();
 }
 
-/// A program of somebody else's that controls a camera and keeps its heart beating.
+/// Another program that controls a camera and keeps its heart beating.
 class ForeignController {
  public:
   explicit ForeignController(const std::string& camera) {
@@ -193,7 +193,7 @@ class ForeignController {
     setsockopt(fd_.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     // Write 2, control, into the control privilege register.
     const auto taken = ask({0x42, 1, 0, 0x82, 0, 8, 0, 1, 0, 0, 0x0a, 0, 0, 0, 0, 2});
-    EXPECT_TRUE(taken) << "the camera is not to be had";
+    EXPECT_TRUE(taken) << "the camera is not free";
     heart_ = std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
         EXPECT_TRUE(ask({0x42, 1, 0, 0x80, 0, 4, 0, 1, 0, 0, 0x0a, 0}));

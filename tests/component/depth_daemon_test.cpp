@@ -34,7 +34,7 @@ TEST_F(DepthDaemon, TellsHowItsSensorFares) {
   EXPECT_TRUE(says("degraded: no depth sensor found: plug it in"));
   feed = std::make_unique<test::DepthFeed>();
   EXPECT_TRUE(says("came back 1 times"));
-  // Pictures a second are told after the first second of pictures.
+  // Pictures a second are known after the first second of pictures.
   EXPECT_TRUE(becomes([](const json& status) { return status.at("shown_hz") > 0; }));
   EXPECT_EQ(status().at("frames_lost"), 0) << "the cameras never noticed";
 }

@@ -87,7 +87,7 @@ TEST(OpenniSensor, SaysWhenTheLightWasTaken) {
     ASSERT_NE(truth, rt::Timestamp{});
     EXPECT_GE(frame->frame_ready - truth, 40ms);
     least = std::min(least, frame->frame_ready - truth);
-    // What no arrival tells cannot be known; beyond that the stamps leave nothing open.
+    // Arrivals bound what can be known; within that the stamps decide everything.
     const rt::Nanoseconds unknowable = least - 40ms;
     EXPECT_LT(std::chrono::abs(frame->exposure - truth - unknowable), 1ms);
   }

@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Somebody who listens on the trigger wire, so that the emulated line has a far end. The fake
+/// Listens on the trigger wire, so that the emulated line has a far end. The fake
 /// camera has no hardware trigger and runs free at 25 Hz: beside triggers at 20 Hz its frames
 /// come at every phase, and those in the first half of a period have an edge to go to.
 class SilentWire {

@@ -267,8 +267,8 @@ TEST_F(StudioDepth, IsTakenInTheInstantsThatTheCamerasShow) {
   std::printf("exposure off by %.2f ms at the median, %.2f ms at most\n",
               static_cast<double>(errors[errors.size() / 2].count()) * 1e-6,
               static_cast<double>(errors.back().count()) * 1e-6);
-  // Seconds of the play and of our clock run alike, but where the play begins anew (58 of 59 steps
-  // here), and where a busy machine held the triggers up.
+  // Seconds of the play and of our clock run alike, except where the play begins again (58 of 59
+  // steps here), and where a busy machine held the triggers up.
   int in_step = 0;
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     const Shown& a = shown_[pairs_[i - 1].number];

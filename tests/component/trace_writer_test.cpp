@@ -60,7 +60,7 @@ TEST(TraceWriter, CountsWhatFindsAFullRing) {
   const std::string path = temporaryFile("full");
   auto writer = TraceWriter::open(path, 1);
   ASSERT_TRUE(writer.has_value()) << writer.error();
-  // Nobody drains before begin().
+  // No thread drains before begin().
   for (std::uint64_t i = 1; i <= 1000; ++i) (*writer)->producer(0).record(SetRecord{i, {}});
   const std::uint64_t lost = (*writer)->dropped();
   EXPECT_GT(lost, 0u);

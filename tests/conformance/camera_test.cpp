@@ -193,9 +193,9 @@ TEST_P(CameraConformance, IsRefusedWhileSomebodyElseControlsIt) {
 }
 
 TEST_P(CameraConformance, NamesTheCameraAndTheAddressThatDoesNotAnswer) {
-  hal::CameraProfile nobody = profile();
-  nobody.address = "127.0.3.99";
-  const auto camera = rig_->open(nobody);
+  hal::CameraProfile absent = profile();
+  absent.address = "127.0.3.99";
+  const auto camera = rig_->open(absent);
   ASSERT_FALSE(camera);
   EXPECT_THAT(camera.error(), testing::HasSubstr("cam01 (127.0.3.99)"));
 }

@@ -27,7 +27,7 @@ struct OpenDepthSensor {
 /// 6 m away in the middle of a room, with colour.
 struct DepthBackend {
   const char* name;
-  bool repeats;  ///< a recording begins anew at its end
+  bool repeats;  ///< a recording begins again at its end
   std::function<OpenDepthSensor()> open;
 };
 
@@ -101,7 +101,7 @@ TEST_P(DepthSensorConformance, TellsItsStateFromAnyThread) {
 
 TEST_P(DepthSensorConformance, WaitsNoLongerThanAsked) {
   ASSERT_TRUE(sensor_->waitFrame(20s));
-  // A picture may be there at once; after a few there is none.
+  // A picture may be there immediately; after a few there is none.
   for (int i = 0; i < 100 && sensor_->waitFrame(0ns); ++i) {
   }
   const rt::Timestamp before = rt::now();

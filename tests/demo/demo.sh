@@ -38,7 +38,7 @@ bin=$root/build/release/bin
 rate_of_recording=30   # Hz: a 1 Gb/s link carries at most 55 of its portrait frames a second
 
 zoom=1.0
-warm_up=2  # seconds in which losses are told and not judged: all programs are new to the processors
+warm_up=2  # seconds in which losses are reported and not judged: all programs are new to the processors
 emulator_patience=600  # tenths of a second
 picture=1280x720
 filmed=yes
@@ -230,7 +230,7 @@ file = "$1/rig.toml"
 addresses = [$addresses]
 [trigger]
 rate_hz = $2
-genlock = false  # nobody sees this screen's vblanks, and a wait for them would count as work
+genlock = false  # this screen has no true vblanks, and a wait for them would count as work
 [display]
 width_px = ${picture%x*}
 height_px = ${picture#*x}
@@ -310,7 +310,7 @@ processor_time() {
   awk '$1 == "cpu" { all = 0; for (i = 2; i <= 9; ++i) all += $i; print all, $5 + $6, $9 }' /proc/stat
 }
 
-# What the machine was like meanwhile, so that a bad hour of it is told from a bad build.
+# What the machine was like meanwhile, so that a reader can tell a bad hour of it from a bad build.
 tell_of_machine() {  # PROCESSOR-TIME-BEFORE EMULATOR-STATISTICS
   printf '%s\n%s\n' "$1" "$(processor_time)" | awk -v statistics="$2" '
     NR == 1 { all = $1; idle = $2; taken = $3 }
@@ -412,7 +412,7 @@ run_stamp() {  # FOLDER
 }
 
 # What was drawn stays in the user's cache, so only the first run waits for it. The emulator draws on
-# when no camera sends; kagami-studio draw makes the whole play at once.
+# when no camera sends; kagami-studio draw makes the whole play in one run.
 run_studio() {  # FOLDER
   say 'studio: the first time the hall is drawn, up to a minute'
   usual_patience=$emulator_patience

@@ -42,7 +42,7 @@ one='
     grep -aE "^(broken promise|SUMMARY|==[0-9]+==ERROR|Test unit written)|runtime error" \
       "build/fuzz/$target.log" | head -n 6 | sed "s/^/    /" >&2
     printf "    whole log: build/fuzz/%s.log; repair it, then keep the input in" "$target" >&2
-    printf " tests/fuzz/corpus/%s under a name that tells what it is\n" "$target" >&2
+    printf " tests/fuzz/corpus/%s under a name that says what it is\n" "$target" >&2
     exit 1
   fi'
 printf '%s\n' ${targets:-$known} | xargs -I{} -P 2 sh -c "$one" fuzz {} "$seconds"

@@ -157,7 +157,7 @@ build() {
 [ "$(uname -m)" = x86_64 ] || die "the test kernel runs on x86-64 only, this is $(uname -m)"
 mkdir -p "$cache" || die "no folder $cache"
 exec 9> "$cache/lock"
-flock -w 3600 9 || die "somebody else has been building in $cache for an hour"
+flock -w 3600 9 || die "another process has been building in $cache for an hour"
 all=
 [ $# -gt 0 ] || { set -- 6.12 7.2; all=yes; }
 for version in "$@"; do

@@ -247,7 +247,7 @@ TEST(WholeBox, GivesEveryLockedPictureItsVblank) {
   int all = 0;
   for (const int count : pictures) all += count;
   EXPECT_GE(usual, 20);
-  // A press into live is answered at once, by a moment that had its vblank already.
+  // A press into live is answered immediately, by a moment that had its vblank already.
   constexpr int kPressesIntoLive = 2;
   EXPECT_LE(all - usual, kPressesIntoLive) << run.figures["genlock"].dump(1);
 }

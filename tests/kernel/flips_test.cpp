@@ -19,7 +19,7 @@ struct Outcome {
 };
 
 /// Draws as often as the display takes it, as a render loop does that sleeps until the last flip is
-/// told.
+/// known.
 Outcome showAll(ui::KmsDisplay& display, int flips) {
   const rt::Nanoseconds period(std::llround(1e9 / display.mode().refresh_hz));
   Outcome outcome;

@@ -39,7 +39,7 @@ struct Fired {
   appliance::GenlockStatus status;
 };
 
-/// A line with a camera at its end that can be told when it fires.
+/// A line with a camera at its end whose instants of firing are known.
 class CameraLine final : public hal::TriggerLine {
  public:
   explicit CameraLine(const appliance::GenlockBoard& genlock) : genlock_(genlock) {}
@@ -72,7 +72,7 @@ struct LockRun {
   double vblank_ns = 0;
 };
 
-/// Triggers of @p trigger_hz, each frame ready 10 ms later and shown at once.
+/// Triggers of @p trigger_hz, each frame ready 10 ms later and shown immediately.
 LockRun runAt(double trigger_hz, rt::Nanoseconds start_phase) {
   ui::KmsConfig config = KmsViewer::quick("/dev/dri/card0");
   config.path = ui::ScanoutPath::kCopied;  // in place every picture costs many page faults here

@@ -191,7 +191,7 @@ TEST(GpioPanel, NamesAButtonHeldAtBootAndReportsOnlyItsRelease) {
   ASSERT_TRUE(panel.panel);
   EXPECT_THAT(panel.notes, Contains(HasSubstr("the button freeze is held or stuck")));
   EXPECT_TRUE(panel.panel->isPressed(Button::kFreeze));
-  EXPECT_FALSE(panel.panel->waitEvent(300ms)) << "nobody pressed it";
+  EXPECT_FALSE(panel.panel->waitEvent(300ms)) << "it was not pressed";
   sim.contact(Button::kFreeze, false);
   const auto release = panel.panel->waitEvent(1s);
   ASSERT_TRUE(release.has_value());
@@ -277,7 +277,7 @@ TEST(GpioPanel, IsGoneWithItsChipAndStaysSilent) {
   ASSERT_TRUE(panel->waitEvent(1s).has_value());
   sim.chip.remove();
   EXPECT_FALSE(panel->waitEvent(50ms));
-  EXPECT_FALSE(panel->isPressed(Button::kLive)) << "it must not repeat for ever";
+  EXPECT_FALSE(panel->isPressed(Button::kLive)) << "it must not repeat forever";
   EXPECT_FALSE(panel->alive());
   panel->setLamp(Lamp::kLive, true);
   EXPECT_FALSE(panel->waitEvent(50ms));

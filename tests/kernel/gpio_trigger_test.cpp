@@ -100,7 +100,7 @@ std::string faultOf(const std::vector<std::string>& lines) {
 TEST(GpioTriggerLine, IsInactiveFromTheFirstMoment) {
   for (const bool active_low : {false, true}) {
     GpioSim chip("board", {"SPARE", "TRIGGER"});
-    chip.pull("TRIGGER", !active_low);  // the wire is active while nobody drives it
+    chip.pull("TRIGGER", !active_low);  // the wire is active while it is not driven
     const std::uint32_t number = GpioTrace::numberOf("TRIGGER");
     GpioTrace trace("opening");
     const auto line = openTriggerLine({.lines = {"TRIGGER"}, .active_low = active_low});

@@ -120,7 +120,7 @@ if [ -n "$virtual" ]; then
 fi
 
 # Consoles: 0 is the command's stdout, 1 its stderr, the serial line the kernel's messages.
-# In the background, so that a signal ends the kernel at once.
+# In the background, so that a signal ends the kernel immediately.
 rc=0
 # shellcheck disable=SC2086  # arguments are words
 ${limit:+timeout -k 5 "$limit"} "$kernel" "mem=$memory" "uml_dir=$run" umid=bed \

@@ -35,10 +35,10 @@ expect 'stderr comes through alone' "$err" complained
 
 # shellcheck disable=SC2016  # expanded in the bed
 run -- sh -c 'kill -ABRT $$'
-expect 'a command that a signal ends is told like in a shell' "$status" 134
+expect 'a command that a signal ends is reported as a shell does' "$status" 134
 
 run -- no-such-program
-expect 'a missing command is told like in a shell' "$status" 127
+expect 'a missing command is reported as a shell does' "$status" 127
 
 mkdir "$scratch/kept" "$scratch/lost"
 run --write "$scratch/kept" -- touch "$scratch/kept/file" "$scratch/lost/file"

@@ -61,7 +61,7 @@ TEST_P(ScanoutPaths, ShowsEveryPixelThatWasDrawnPictureAfterPicture) {
     ASSERT_TRUE(viewer.show());
     const ScannedOut now = reader.read();
     EXPECT_EQ(differingPixels(viewer.drawn(), now), 0U);
-    EXPECT_GT(differingPixels(before, now), 0U) << "the pictures cannot be told from one another";
+    EXPECT_GT(differingPixels(before, now), 0U) << "the pictures look alike";
     before = now;
   }
 }

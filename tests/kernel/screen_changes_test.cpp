@@ -1,5 +1,5 @@
-// A screen that goes, comes back, is another one or is somebody else's: the picture returns by
-// itself.
+// A screen that goes, comes back, is another one or belongs to another program: the picture returns
+// by itself.
 
 #include <cstdio>
 #include <filesystem>

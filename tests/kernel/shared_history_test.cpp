@@ -138,7 +138,7 @@ class NotingDisplay final : public hal::Display {
   std::atomic<int> first_byte_ = -1;
 };
 
-/// Counts the pictures that were told to be read in place.
+/// Counts the pictures that were reported as read in place.
 class ImportCounter final : public PictureObserver {
  public:
   void onPicture(const ShownPicture& picture) noexcept override {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 TEST(KernelBed, HasAScreen) {
   EXPECT_TRUE(fs::exists("/dev/dri/card0"));
-  // "unknown" until somebody looks.
+  // "unknown" until a program looks.
   EXPECT_NE(test::readAttribute("/sys/class/drm/card0-Virtual-1/status"), "disconnected");
 }
 

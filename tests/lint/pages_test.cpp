@@ -101,15 +101,15 @@ TEST_F(TreePages, NameOnlyOptionsThatThereAre) {
 
 TEST_F(TreePages, TellWhatEveryFolderIsFor) {
   const SourceFile page = lint::read(lint::root(), "docs/architecture.md");
-  std::set<std::string> told;
+  std::set<std::string> named;
   for (const auto& row : lint::markdownTable(page, "Where")) {
-    for (const std::string& folder : lint::quotedWords(row.front())) told.insert(folder);
+    for (const std::string& folder : lint::quotedWords(row.front())) named.insert(folder);
   }
   for (const SourceFile& file : files_) {
     if (!file.path.ends_with("/CMakeLists.txt")) continue;
     const std::string folder = file.path.substr(0, file.path.rfind('/') + 1);
-    if (folder.starts_with("tests/")) continue;  // HACKING.md tells of the tiers
-    EXPECT_TRUE(told.contains(folder)) << folder << " is not in the folders of " << page.path;
+    if (folder.starts_with("tests/")) continue;  // HACKING.md lists the tiers
+    EXPECT_TRUE(named.contains(folder)) << folder << " is not in the folders of " << page.path;
   }
 }
 

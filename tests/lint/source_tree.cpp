@@ -18,7 +18,7 @@ bool isText(const fs::path& path) {
   return std::ranges::find(kBinary, path.extension().string()) == kBinary.end();
 }
 
-/// Outputs lie beside the sources: nobody wrote what is in them.
+/// Outputs lie beside the sources: no person wrote what is in them.
 bool isOutput(const fs::path& relative) {
   const auto top = relative.begin()->string();
   return top == "build" || top == "out" || top == ".git" || top == ".cache";

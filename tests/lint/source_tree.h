@@ -11,7 +11,7 @@ struct SourceFile {
   std::vector<std::string> lines;
 };
 
-/// The repository's root, as the build was told.
+/// The repository's root, as configured.
 [[nodiscard]] std::filesystem::path root();
 
 [[nodiscard]] SourceFile read(const std::filesystem::path& root, const std::string& path);

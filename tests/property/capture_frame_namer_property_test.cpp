@@ -29,7 +29,7 @@ enum class Event : std::uint8_t {
   kLost,         // its frame vanishes on the wire, with its id
   kHeldBack,     // its frame comes one period late
   kExtraFrame,   // one more frame follows that nothing asked for
-  kSlowMachine,  // nobody looks for two periods
+  kSlowMachine,  // frames are not looked at for two periods
   kRebooted,     // clock and ids start again
   kClockSet,
   kIdJumped,
@@ -59,7 +59,7 @@ rc::Gen<std::vector<Step>> anyFaults() {
   return rc::gen::resize(400, rc::gen::container<std::vector<Step>>(step));
 }
 
-/// One camera and the machine that looks at its frames, both as faulty as told.
+/// One camera and the machine that looks at its frames, both with the given faults.
 class Model {
  public:
   /// @p clock_step: what a clock is set by, times one to five.
@@ -123,7 +123,7 @@ class Model {
         clock_base_ = edge(trigger_);
         clock_set_ = 1ms;
         frame_id_ = 0;
-        namer_.restart();  // it has forgotten whom to send to: its stream was started anew
+        namer_.restart();  // it forgot its receiver: its stream was started again
         break;
       case Event::kClockSet:
         // Once in a run: two that add up to a period cannot be seen from outside.

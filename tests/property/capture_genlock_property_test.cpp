@@ -80,9 +80,9 @@ RC_GTEST_PROP(GenlockProperty, NeverMovesADeadlineFartherThanItMayWhateverItIsTo
     if (*rc::gen::inRange(0, 2) == 0) {
       screen.period_ns = static_cast<double>(period.count()) / *rc::gen::inRange(1, 4);
     }
-    const bool told = *rc::gen::inRange(0, 3) > 0;
-    genlock.take(
-        {.timing = told ? std::optional(screen) : std::nullopt, .ready_delay = between(0ms, 60ms)});
+    const bool known = *rc::gen::inRange(0, 3) > 0;
+    genlock.take({.timing = known ? std::optional(screen) : std::nullopt,
+                  .ready_delay = between(0ms, 60ms)});
     const Nanoseconds moved = genlock.step(deadline);
     RC_ASSERT(std::abs(static_cast<double>(moved.count())) <= most_ns);
     if (genlock.status().state == GenlockState::kFreeRunning) RC_ASSERT(moved == 0ns);

@@ -239,7 +239,7 @@ double anyFinite() {
 RC_GTEST_PROP(ConstantView, IsFiniteForAnyFiniteInput, ()) {
   Scene scene = randomScene();
   RigCamera& camera = scene.rig.cameras.front();
-  // One to four quantities become anything; with all at once nothing ever gets far.
+  // One to four quantities become anything; with all of them no case gets far.
   const int changes = anyIn(1, 5);
   for (int i = 0; i < changes; ++i) {
     switch (anyIn(0, 10)) {

@@ -39,7 +39,7 @@ std::vector<Gesture> anyGestures() {
                           .press_heard = anyIn(0, 20) > 0,
                           .release_heard = heard};
     gestures.push_back(gesture);
-    // A release that nobody heard of is found within a repetition's time.
+    // A release whose event was lost is found within a repetition's time.
     free_at[button] = gesture.release + (heard ? 5ms : 130ms);
   }
   return gestures;

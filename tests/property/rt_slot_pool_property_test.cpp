@@ -105,7 +105,7 @@ struct History {
   static std::uint64_t contentOf(std::uint64_t tag) { return tag * 0x9E3779B97F4A7C15U; }
 
   /// Writes until every reader has looked often enough.
-  /// @return how often no slot could be had
+  /// @return how often no slot was free
   int write() {
     int refused = 0;
     std::deque<std::uint32_t> shown;
@@ -172,7 +172,7 @@ TEST(SlotPoolConcurrency, KeepsPinnedContentUnchangedWhileTheWriterNeverWaits) {
       }
       refused = history.write();
     }
-    EXPECT_EQ(refused, 0) << "the reserve covers every pin that can be held at once";
+    EXPECT_EQ(refused, 0) << "the reserve covers all pins together";
     EXPECT_THAT(changed, testing::Each(0));
 
     (void)history.pool.tryAcquire();  // collects what the readers held to the end

@@ -28,7 +28,7 @@ struct BoxOptions {
 };
 
 /// The real programs, end to end: emulated cameras, a message bus of its own, and the daemon on a
-/// screen that nobody sees. Ended with the object.
+/// offscreen display. Ended with the object.
 class Box {
  public:
   /// Errors   One line: which program, why, and where its log is.

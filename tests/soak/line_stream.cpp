@@ -42,7 +42,7 @@ void LineStream::read() {
     pollfd ready{.fd = fd_.get(), .events = POLLIN, .revents = 0};
     if (::poll(&ready, 1, kLookEvery_ms) <= 0) continue;
     const ssize_t bytes = ::read(fd_.get(), chunk.data(), chunk.size());
-    if (bytes == 0) return;  // a hang-up tells itself only after there was a writer
+    if (bytes == 0) return;  // a hang-up shows only after there was a writer
     if (bytes < 0) continue;
     pending.append(chunk.data(), static_cast<std::size_t>(bytes));
     std::size_t begin = 0;

@@ -34,7 +34,7 @@ constexpr rt::Nanoseconds kStatusEvery = 250ms;
 constexpr rt::Nanoseconds kHoldingEvery = 1s;
 constexpr rt::Nanoseconds kProgressEvery = 10s;
 constexpr rt::Nanoseconds kLastRecovery = 4s;  // after the last fault, before the end
-constexpr rt::Nanoseconds kStatusLag = 1s;     // a camera that came back may still be told as lost
+constexpr rt::Nanoseconds kStatusLag = 1s;  // a camera that came back may still be reported as lost
 constexpr std::int64_t kMostGrowth_bytes = 1 << 20;
 constexpr std::size_t kMostLines = 20;  // of one sort on the terminal; the file has all
 
@@ -47,49 +47,49 @@ struct Options {
   BoxOptions box{.folder = "out/soak"};
 };
 
-/// What both files of the running programs told so far.
+/// What both files of the running programs have said so far.
 ///
 /// Threads  The streams' threads write, main reads: under the lock.
-struct Told {
-  Told(std::uint32_t cameras, rt::Nanoseconds period) : account(cameras, period) {}
+struct Records {
+  Records(std::uint32_t cameras, rt::Nanoseconds period) : account(cameras, period) {}
   std::mutex mutex;
   LossAccount account;
   std::optional<appliance::SummaryRecord> summary;
   std::string unreadable;  // the first line that could not be read
 };
 
-void takeTraceLine(Told& told, std::string_view line) {
+void takeTraceLine(Records& records, std::string_view line) {
   const auto record = appliance::parseTraceLine(line);
-  const std::scoped_lock lock(told.mutex);
+  const std::scoped_lock lock(records.mutex);
   if (!record) {
-    if (told.unreadable.empty()) told.unreadable = "trace: " + record.error();
+    if (records.unreadable.empty()) records.unreadable = "trace: " + record.error();
   } else if (const auto* trigger = std::get_if<appliance::TriggerRecord>(&*record)) {
-    told.account.triggerFired(*trigger);
+    records.account.triggerFired(*trigger);
   } else if (const auto* frame = std::get_if<appliance::FrameRecord>(&*record)) {
-    told.account.frameArrived(*frame);
+    records.account.frameArrived(*frame);
   } else if (const auto* summary = std::get_if<appliance::SummaryRecord>(&*record)) {
-    told.summary = *summary;
+    records.summary = *summary;
   }
 }
 
-void takeWireLine(Told& told, std::string_view line) {
+void takeWireLine(Records& records, std::string_view line) {
   if (line == appliance::kWireLogHeader) return;
   const auto frame = appliance::parseWireLine(line);
-  const std::scoped_lock lock(told.mutex);
+  const std::scoped_lock lock(records.mutex);
   if (frame) {
-    told.account.frameSent(*frame);
-  } else if (told.unreadable.empty()) {
-    told.unreadable = "wire log: not a line of it";
+    records.account.frameSent(*frame);
+  } else if (records.unreadable.empty()) {
+    records.unreadable = "wire log: not a line of it";
   }
 }
 
 /// One run, from the running box to the verdict.
 class Run {
  public:
-  Run(const Options& options, Box& box, Told& told)
+  Run(const Options& options, Box& box, Records& records)
       : options_(options),
         box_(box),
-        told_(told),
+        records_(records),
         period_(options.box.period()),
         every_(std::llround(options.fault_every_s * 1e9)),
         plan_(options.faults, options.box.cameras, every_, options.box.seed) {}
@@ -117,7 +117,7 @@ class Run {
 
   const Options& options_;
   Box& box_;
-  Told& told_;
+  Records& records_;
   rt::Nanoseconds period_;
   rt::Nanoseconds every_;
   FaultPlan plan_;
@@ -129,7 +129,7 @@ class Run {
   std::vector<std::string> problems_;
   std::vector<Holding> held_;
   rt::Timestamp warm_up_end_ = rt::Timestamp::max();  // not yet
-  std::set<std::uint32_t> told_silent_;  // cameras already named as silent for no reason
+  std::set<std::uint32_t> reported_silent_;  // cameras already named as silent for no reason
 };
 
 void Run::watch() {
@@ -214,20 +214,20 @@ void Run::lookAtStatus(rt::Timestamp now) {
     const std::string state = one.value("state", "");
     const std::uint32_t i = camera++;
     if (state == "streaming" || state == "degraded") {
-      told_silent_.erase(i);
+      reported_silent_.erase(i);
       continue;
     }
     if (!faults_.empty() && faults_.back().camera == i && mayBeSilent(i, now))
       faults_.back().named = true;
     if (mayBeSilent(i, now) || now < start_ + LossAccount::kSettling) continue;
-    if (told_silent_.insert(i).second)
+    if (reported_silent_.insert(i).second)
       note("camera " + std::to_string(i + 1) + " was " + state + " without a fault on it");
   }
 }
 
 Judgement Run::judgedSoFar() {
-  const std::scoped_lock lock(told_.mutex);
-  return judge(told_.account.lost(), faults_, period_);
+  const std::scoped_lock lock(records_.mutex);
+  return judge(records_.account.lost(), faults_, period_);
 }
 
 void Run::tellProgress(rt::Timestamp now) {
@@ -247,8 +247,8 @@ void Run::tellProgress(rt::Timestamp now) {
 
 std::vector<std::string> Run::conclude() {
   {
-    const std::scoped_lock lock(told_.mutex);
-    told_.account.finish(stop_asked_at - LossAccount::kLongestWay);
+    const std::scoped_lock lock(records_.mutex);
+    records_.account.finish(stop_asked_at - LossAccount::kLongestWay);
   }
   const Judgement judgement = judgedSoFar();
   const std::optional<Growth> growth = growthOf(held_, warm_up_end_);
@@ -260,7 +260,7 @@ std::vector<std::string> Run::conclude() {
   table << faultTable(judgement, start_) << "\n" << kindTable(judgement);
   for (const std::string& line : problems_) table << "NOT GOOD: " << line << "\n";
   std::printf("\n%s\n", kindTable(judgement).c_str());
-  const LossAccount& account = told_.account;
+  const LossAccount& account = records_.account;
   std::printf(
       "%llu triggers judged, %llu frames stored, %zu lost, %zu of them unexplained; %llu lost in "
       "the "
@@ -281,16 +281,16 @@ std::vector<std::string> Run::conclude() {
 }
 
 void Run::noteWhatIsBad(const Judgement& judgement) {
-  if (!told_.unreadable.empty()) note(told_.unreadable);
-  if (!told_.summary) {
+  if (!records_.unreadable.empty()) note(records_.unreadable);
+  if (!records_.summary) {
     note("kagamid did not come to its end: its trace has no summary");
-  } else if (told_.summary->trace_dropped > 0) {
-    note("the trace lost " + std::to_string(told_.summary->trace_dropped) + " records");
+  } else if (records_.summary->trace_dropped > 0) {
+    note("the trace lost " + std::to_string(records_.summary->trace_dropped) + " records");
   }
-  if (told_.account.triggersJudged() == 0) note("no trigger was judged: run longer");
+  if (records_.account.triggersJudged() == 0) note("no trigger was judged: run longer");
   for (const LostFrame& lost : judgement.unexplained)
     problems_.push_back("unexplained: " + describe(lost, start_));
-  for (const MisattributedFrame& frame : told_.account.misattributed())
+  for (const MisattributedFrame& frame : records_.account.misattributed())
     problems_.push_back("camera " + std::to_string(frame.camera + 1) +
                         ": the frame stored as that of trigger " + std::to_string(frame.trigger) +
                         " was sent for another one");
@@ -298,7 +298,7 @@ void Run::noteWhatIsBad(const Judgement& judgement) {
     const bool just_begun = one.fault.from + kStatusLag > stop_asked_at;
     if (one.fault.kind->named && !one.fault.named && !just_begun)
       problems_.push_back("camera " + std::to_string(one.fault.camera + 1) + " (" +
-                          std::string(one.fault.kind->name) + ") was never told as silent");
+                          std::string(one.fault.kind->name) + ") was never reported as silent");
   }
 }
 
@@ -315,16 +315,16 @@ void Run::noteGrowth(const Growth& growth) {
 
 /// Errors   One line; the box did not start.
 std::expected<std::vector<std::string>, std::string> soak(const Options& options) {
-  Told told(options.box.cameras, options.box.period());
+  Records records(options.box.cameras, options.box.period());
   LineStream trace(Box::tracePath(options.box.folder),
-                   [&](std::string_view line) { takeTraceLine(told, line); });
+                   [&](std::string_view line) { takeTraceLine(records, line); });
   LineStream wire(Box::wirePath(options.box.folder),
-                  [&](std::string_view line) { takeWireLine(told, line); });
+                  [&](std::string_view line) { takeWireLine(records, line); });
   if (!trace.open() || !wire.open())
     return std::unexpected(options.box.folder.string() + ": no pipe can be made there");
   auto box = Box::start(options.box);
   if (!box) return std::unexpected(box.error());
-  Run run(options, **box, told);
+  Run run(options, **box, records);
   run.watch();
   std::printf("soak: %s\n", stop_asked ? "stopped: judging what was seen" : "judging");
   run.stop_asked_at = rt::now();

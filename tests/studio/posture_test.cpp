@@ -33,7 +33,7 @@ constexpr int kEnoughJoints = 14;
 constexpr double kEnoughViews = 0.9;
 /// A body turned away by more than this shows its back.
 constexpr double kSide_deg = 90;
-/// Views that show a little of the back are told of, too.
+/// Views that show a little of the back are reported, too.
 constexpr double kLittleBack_deg = 110;
 constexpr double kMargin = 1.35;  // of the square about the joints
 
@@ -116,7 +116,7 @@ TEST(Posture, IsFoundByANetworkThatNeverSawTheStudio) {
       const double turned_deg = turnedAway_deg(pose.joints, camera);
       if (turned_deg > kLittleBack_deg) continue;
       const std::vector<cv::Point2d> truth = projectJoints(pose.joints, camera);
-      // Such a view shows somebody else.
+      // Such a view shows another person.
       if (std::ranges::count(coveredJoints(world, second, camera, pose.joints, truth), true) >
           17 - kEnoughJoints) {
         ++left_out;
@@ -183,7 +183,7 @@ TEST(Posture, IsFoundByANetworkThatNeverSawTheStudio) {
       found_joints[found_joints.size() / 2], worst, worst_view.c_str());
   std::printf("turned away by %.0f to %.0f degrees, beside the bar: %d of %d\n", kSide_deg,
               kLittleBack_deg, back_passed, back_views);
-  std::printf("left out: %d views in which somebody else stands before more than %d joints\n",
+  std::printf("left out: %d views in which another person stands before more than %d joints\n",
               left_out, 17 - kEnoughJoints);
   constexpr std::array<const char*, 17> kNames = {
       "nose",           "left eye",   "right eye",   "left ear",   "right ear",   "left shoulder",

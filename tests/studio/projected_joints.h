@@ -14,7 +14,7 @@
 [[nodiscard]] std::vector<cv::Point2d> projectJoints(std::span<const Eigen::Vector3d> joints_rig_m,
                                                      const emulator::studio::StudioCamera& camera);
 
-/// Which of the athlete's joints somebody else covers: others who stand nearer, their trunks and
+/// Which of the athlete's joints other people cover: others who stand nearer, their trunks and
 /// limbs as thick as people's are.
 [[nodiscard]] std::array<bool, 17> coveredJoints(const emulator::studio::World& world,
                                                  double second,

@@ -179,18 +179,18 @@ TEST(Studio, TellsEveryJointWhereOpenCvSeesIt) {
   std::size_t checked = 0;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const StudioCamera& drawn = rig.cameras[c];
-    StudioCamera told;
+    StudioCamera described;
     const auto& written = truth["cameras"][c];
-    told.model.focal_px = written["focal_px"];
-    told.model.centre_px = written["centre_px"];
-    told.model.distortion = written["distortion"];
-    told.model.rotation = written["rotation_cam_rig"];
-    told.model.translation_m = written["translation_cam_rig_m"];
+    described.model.focal_px = written["focal_px"];
+    described.model.centre_px = written["centre_px"];
+    described.model.distortion = written["distortion"];
+    described.model.rotation = written["rotation_cam_rig"];
+    described.model.translation_m = written["translation_cam_rig_m"];
     std::vector<Eigen::Vector3d> in_front;
     std::ranges::copy_if(joints, std::back_inserter(in_front), [&](const Eigen::Vector3d& joint) {
       return drawn.rotation().row(2).dot(joint - drawn.centre()) > 0.5;
     });
-    const auto seen = projectJoints(in_front, told);
+    const auto seen = projectJoints(in_front, described);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const Eigen::Vector2d ours = drawn.project(in_front[i]);
       if (ours.x() < 0 || ours.y() < 0 || ours.x() >= 1280 || ours.y() >= 1024) continue;
@@ -235,7 +235,7 @@ TEST(Studio, DrawsTheAthleteWhereItsJointsAre) {
     }
   }
   std::printf(
-      "%d of %d joints lie behind the surface that is drawn there; somebody covers %d more\n",
+      "%d of %d joints lie behind the surface that is drawn there; other people cover %d more\n",
       inside, joints, covered);
   EXPECT_GE(inside, joints * 95 / 100);
   EXPECT_LE(covered, joints / 4);

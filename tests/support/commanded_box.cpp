@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Asks until the answer is right; else tells the last one.
+/// Asks until the answer is right; otherwise reports the last one.
 testing::AssertionResult comesTrue(const std::function<bool(std::string& answer)>& ask) {
   std::string last;
   for (int i = 0; i < 100; ++i) {

@@ -19,7 +19,7 @@ class PrivateBus {
     pid_ = fork();
     if (pid_ == 0) {
       if (freopen("/dev/null", "w", stderr) == nullptr)
-        _exit(127);  // it complains of limits that nobody needs
+        _exit(127);  // it complains of limits that it does not need
       const std::string print = "--print-address=" + std::to_string(ends[1]);
       execlp("dbus-daemon", "dbus-daemon", "--session", "--nofork", "--nopidfile", print.c_str(),
              static_cast<char*>(nullptr));

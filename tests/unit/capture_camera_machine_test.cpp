@@ -28,7 +28,7 @@ class CameraLife : public testing::Test {
   void answer(CameraAnswer answer, const std::string& controller = "") {
     machine_.probed(now_, {.answer = answer, .controller = controller});
   }
-  /// The next trigger; @p frame: whether it brings one.
+  /// The next trigger; @p frame: whether a frame follows.
   void fire(bool frame) {
     now_ += kPeriod;
     ++facts_.fired;
@@ -139,7 +139,7 @@ TEST_F(CameraLife, ACameraThatForgotUsIsClosedOpenedAndProvenAgain) {
   EXPECT_EQ(state(), CameraState::kRecovering);
   ASSERT_EQ(step(), CameraAction::kClose);
   close();
-  ASSERT_EQ(step(), CameraAction::kProbe) << "at once";
+  ASSERT_EQ(step(), CameraAction::kProbe) << "immediately";
   answer(CameraAnswer::kFree);
   openAndStart();
   EXPECT_EQ(state(), CameraState::kRecovering);
@@ -285,7 +285,7 @@ TEST_F(CameraLife, FirstFramesThatCouldNotBeToldApartAreForgivenOnceOthersFollow
     const bool told_apart = i >= 3;  // a machine that was busy at the beginning
     fire(told_apart);
     if (!told_apart) ++facts_.extra;
-    ASSERT_EQ(step(), CameraAction::kNone) << "a camera that brings every frame is left alone";
+    ASSERT_EQ(step(), CameraAction::kNone) << "a camera that delivers every frame is left alone";
   }
   EXPECT_EQ(state(), CameraState::kStreaming);
 }

@@ -94,7 +94,7 @@ TEST(PlayClock, KeepsTheDistancesOfTheRecording) {
   const rt::Timestamp now = rt::fromNs(1'000'000'000);
   EXPECT_EQ(clock.due(500, now), now);
   EXPECT_EQ(clock.due(33'833, now + 5ms), now + 33'333us);
-  EXPECT_EQ(clock.due(67'166, now + 2s), now + 66'666us) << "late: goes on at once";
+  EXPECT_EQ(clock.due(67'166, now + 2s), now + 66'666us) << "late: goes on immediately";
 }
 
 TEST(PlayClock, GoesOnAfterAJumpOfTheStamps) {

@@ -117,7 +117,7 @@ TEST(ControlChannel, ExclusiveHidesTheRegistersFromOthers) {
 TEST(ControlChannel, IsFreeAgainWhenTheHeartbeatStops) {
   ControlChannel control;
   ASSERT_EQ(control.request(kFirst, ControlChannel::kControl, rt::fromNs(0)), Status::kSuccess);
-  control.hear(kSecond, rt::fromNs(0) + 2s);  // somebody else's words are no heartbeat
+  control.hear(kSecond, rt::fromNs(0) + 2s);  // another client's message is no heartbeat
   EXPECT_FALSE(control.expire(rt::fromNs(0) + 3s, 3s));
   EXPECT_TRUE(control.expire(rt::fromNs(0) + 3s + 1ns, 3s));
   EXPECT_EQ(control.privilege(), 0u);
@@ -168,7 +168,7 @@ TEST(Validity, IsJudgedByWhatFollowsTheWarmUp) {
   run.endWarmUp();
   run.lateness.add(1ms);
   EXPECT_EQ(invalidReason(run, 25ms), "");
-  EXPECT_EQ(run.early_lateness.max(), 80ms) << "it is told all the same";
+  EXPECT_EQ(run.early_lateness.max(), 80ms) << "it is reported all the same";
 
   RunRecord late = run;
   late.lateness.add(26ms);

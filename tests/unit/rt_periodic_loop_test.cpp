@@ -91,7 +91,7 @@ TEST(PeriodicLoop, WakesAtItsDeadlinesAndNeverBefore) {
 TEST(SleepUntil, ReturnsAtOnceForAnInstantThatHasPassed) {
   rt::sleepUntil(rt::now() - 1h);
   rt::sleepUntil(fromNs(-5));
-  SUCCEED();  // hanging is the failure; ctest's timeout tells
+  SUCCEED();  // hanging is the failure; ctest's timeout finds it
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST(SlotPool, ParksAPinnedSlotAndCollectsItOnceUnpinned) {
     ASSERT_TRUE(pin && pin->slot() == slot);
     pool.retire(slot);
     EXPECT_EQ(pool.parkedSlots(), 1u);
-    EXPECT_FALSE(pool.tryAcquire().has_value());  // refused at once, not waited for
+    EXPECT_FALSE(pool.tryAcquire().has_value());  // refused immediately, not waited for
     EXPECT_FALSE(pool.tryPin(slot, 1).has_value());
   }
   EXPECT_EQ(pool.tryAcquire(), slot);
@@ -91,7 +91,7 @@ TEST(SlotPin, UnpinsOnceHoweverOftenItMoves) {
     auto shown = pool.tryPin(first, 1);
     auto held = std::move(shown);
     auto next = pool.tryPin(second, 2);
-    held = std::move(next);  // drops the first at once
+    held = std::move(next);  // drops the first immediately
     ASSERT_TRUE(held && held->slot() == second);
     pool.retire(first);
     EXPECT_EQ(pool.parkedSlots(), 0u);

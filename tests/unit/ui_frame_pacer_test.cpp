@@ -127,7 +127,7 @@ TEST(FramePacer, StartsAnewWhenTheVblankNumberJumpsBack) {
   EXPECT_NEAR(pacer.timing()->period_ns, 20e6, 5);
 
   feed(pacer, after, 1000, 1);
-  feed(pacer, after, 999, 1);  // nobody said restart()
+  feed(pacer, after, 999, 1);  // without a call of restart()
   EXPECT_FALSE(pacer.timing().has_value());
   feed(pacer, after, 1001, 12);
   EXPECT_LE(std::abs(errorUs(pacer, after, 1020)), 1);

@@ -31,7 +31,7 @@ TEST(ScanoutQueue, ABufferIsDrawnPendingOnScreenAndFree) {
   EXPECT_EQ(queue.state(buffer), BufferState::kFree) << "until it is drawn";
   queue.finishDraw(buffer);
   EXPECT_EQ(queue.drawn(), buffer);
-  EXPECT_EQ(queue.tryBeginDraw().value(), buffer) << "a drawn one that nobody shows is drawn over";
+  EXPECT_EQ(queue.tryBeginDraw().value(), buffer) << "a drawn one that is not shown is drawn over";
   queue.submitted(buffer, 7, 70);
   EXPECT_EQ(queue.state(buffer), BufferState::kPending);
   EXPECT_FALSE(queue.takesCommit());

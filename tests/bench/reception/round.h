@@ -19,7 +19,7 @@ class EmulatedRig {
 
   EmulatedRig(std::uint32_t cameras, std::uint32_t width_px, std::uint32_t height_px);
 
-  /// Whether its cameras answer; otherwise error() tells.
+  /// Whether its cameras answer; otherwise error() says why.
   [[nodiscard]] bool ready() const { return ready_; }
   [[nodiscard]] std::string error() const { return process_.output(); }
   /// What a client needs to know of the first @p cameras of them.

@@ -31,7 +31,7 @@ T at(std::span<const char> bytes, std::size_t offset) {
 }
 
 /// Reads one page of the trace's binary form; its text form rounds to microseconds. The layout is
-/// what the kernel tells in events/header_page, events/header_event and
+/// what the kernel writes in events/header_page, events/header_event and
 /// events/gpio/gpio_value/format: a page begins with the time and the number of its bytes, an event
 /// with 5 bits of kind and 27 bits of time since the one before.
 void readPage(std::span<const char> page, std::uint16_t gpio_value, std::vector<GpioEvent>& into) {
@@ -124,7 +124,7 @@ std::optional<LinePlace> findLine(const std::string& name) {
   return std::nullopt;
 }
 
-/// Reads a line once, its direction left as it is; false when somebody else has it.
+/// Reads a line once, its direction left as it is; false when another program has it.
 bool readLine(const std::string& path, std::uint32_t offset) {
   const Descriptor chip(::open(path.c_str(), O_RDWR | O_CLOEXEC));
   gpio_v2_line_request request{};

@@ -32,7 +32,7 @@ class GpioTrace {
   [[nodiscard]] std::vector<GpioEvent> take();
 
   /// The number under which the line with this name is recorded. Needs one line of the same chip
-  /// that nobody has requested: it is read once, and its own event gives the number.
+  /// that no program has requested: it is read once, and its own event gives the number.
   [[nodiscard]] static std::uint32_t numberOf(const std::string& line);
 
  private:
@@ -42,7 +42,7 @@ class GpioTrace {
 };
 
 /// The changes of one output's level, each the write that made it. The first write is one unless
-/// the level before is told and the same.
+/// the level before is known and the same.
 [[nodiscard]] std::vector<GpioEvent> outputEdges(std::span<const GpioEvent> events,
                                                  std::uint32_t number,
                                                  std::optional<bool> before = std::nullopt);

@@ -9,7 +9,7 @@
 
 namespace test {
 
-/// The wire at an output: hands every change of its level to whoever stands at the other end,
+/// The wire at an output: hands every change of its level to the part at the other end,
 /// soon after it happened and with the instant at which it did.
 ///
 /// Threads  One of its own, which calls @p to.
@@ -17,7 +17,7 @@ class GpioWire {
  public:
   using Receiver = std::function<void(const GpioEvent& edge)>;
 
-  /// @p line: the output's name. Open it before the output is driven: earlier edges are not told.
+  /// @p line: the output's name. Open it before the output is driven: earlier edges are not seen.
   GpioWire(const std::string& line, Receiver to);
   ~GpioWire() = default;
   GpioWire(const GpioWire&) = delete;

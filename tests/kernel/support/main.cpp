@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr int kSkipped = 77;  // as ctest is told
+constexpr int kSkipped = 77;  // as SKIP_RETURN_CODE says to ctest
 
 /// What was skipped must not count as passed: one line for each, and a status that says so.
 int skippedOrPassed() {

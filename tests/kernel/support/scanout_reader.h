@@ -22,7 +22,7 @@ struct ScannedOut {
 [[nodiscard]] std::size_t differingPixels(const ScannedOut& a, const ScannedOut& b);
 
 /// Reads the picture that a card really sends to its screen, by the card's writeback connector:
-/// what the hardware composed at a vblank, not what somebody believes to have given it.
+/// what the hardware composed at a vblank, not what a program believes it gave.
 ///
 /// Writeback is a commit, and commits are the master's alone. So the reader works through the
 /// display's own open descriptor, which it copies from the process that shows: its own, or another
@@ -31,7 +31,7 @@ struct ScannedOut {
 /// later.
 ///
 /// The first read after the display lit its screen attaches the writeback connector, which sets
-/// the mode again: the grid of vblanks starts anew there. The destructor detaches it, with the
+/// the mode again: the grid of vblanks starts again there. The destructor detaches it, with the
 /// same effect.
 ///
 /// Errors   Everything throws std::runtime_error with what the kernel refused.

@@ -19,7 +19,7 @@ class Vkms {
   Vkms(const Vkms&) = delete;
   Vkms& operator=(const Vkms&) = delete;
 
-  /// Plugs the screen in or out; the kernel tells every listener, as for a true cable.
+  /// Plugs the screen in or out; the kernel informs every listener, as for a true cable.
   void setConnected(bool connected);
 
   [[nodiscard]] const std::string& card() const { return card_; }  ///< "/dev/dri/card1"
