@@ -35,9 +35,10 @@ void PictureRecorder::onPicture(const ShownPicture& picture) noexcept {
                          .trigger = record.trigger,
                          .commit = record.commit};
   std::snprintf(stamp.mode.data(), stamp.mode.size(), "%s", nameOf(record.mode).data());
-  if (picture.plan != nullptr) {
-    stamp.H_camera_display = picture.plan->H_camera_display;
-    stamp.lens = picture.plan->lens;
+  if (picture.scene.count != 0) {
+    const hal::WarpPlan& leading = picture.scene.layers[0].plan;
+    stamp.H_camera_display = leading.H_camera_display;
+    stamp.lens = leading.lens;
   }
   std::array<char, 32> name{};
   nameStill(record, name);

@@ -1,45 +1,16 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "hal/display_timing.h"
-#include "hal/lens.h"
-#include "hal/pixel_format.h"
+#include "hal/scene.h"
 #include "rt/clock.h"
-#include "rt/dma_buf.h"
 #include "rt/result.h"
 
 namespace hal {
-
-/// One stored frame, borrowed for the duration of a render() call.
-struct SourceImage {
-  const std::byte* pixels = nullptr;  ///< rows of width_px bytes, no padding
-  std::uint32_t width_px = 0;
-  std::uint32_t height_px = 0;
-  PixelFormat format = PixelFormat::kBayerRG8;
-  rt::DmaBufPart dma_buf;  ///< the same bytes for a GPU, if valid; they hold for render(), too
-};
-
-/// Everything the renderer needs to draw one view: pure data, made by the warp planner.
-/// The renderer samples backwards: display pixel -> undistorted camera pixel by
-/// H_camera_display -> distorted source pixel by the lens. Pixel centres at integers.
-struct WarpPlan {
-  SourceImage source;
-  std::array<double, 9> H_camera_display{};  ///< row-major
-  Lens lens;
-  std::array<float, 3> gain_rgb{1, 1, 1};  ///< applied in linear light
-};
-
-/// The line of text over the picture. Trivially copyable; utf-8, zero-terminated.
-struct StatusLine {
-  std::array<char, 128> text{};
-  bool warning = false;  ///< drawn as a badge: the picture is not what was asked for
-  [[nodiscard]] std::string_view view() const { return text.data(); }
-};
 
 struct DisplayMode {
   std::uint32_t width_px = 0;
@@ -75,7 +46,7 @@ struct ScreenStatus {
   std::uint64_t changes = 0;
 };
 
-/// A screen that shows one warped picture at a time.
+/// A screen that shows one picture at a time.
 ///
 /// Threads  One caller: the render thread. The object is made (EGL context included) on a
 ///          SCHED_OTHER thread and handed over: the first call binds the context to its caller.
@@ -94,9 +65,8 @@ class Display {
   /// read in place.
   [[nodiscard]] virtual std::string_view uploadReason() const = 0;
 
-  /// Draws into a free buffer, done when it returns. Without a plan the picture is empty.
-  [[nodiscard]] virtual rt::Result<RenderInstants> render(const WarpPlan* plan,
-                                                          const StatusLine& status) = 0;
+  /// Draws into a free buffer, done when it returns.
+  [[nodiscard]] virtual rt::Result<RenderInstants> render(const Scene& scene) = 0;
 
   /// Hands the buffer just drawn to the next vblank; the instant it did.
   [[nodiscard]] virtual rt::Result<rt::Timestamp> commit(std::uint64_t picture_id) = 0;

@@ -178,8 +178,7 @@ std::string_view KmsDisplay::renderer() const {
   return renderer_->context().renderer();
 }
 
-rt::Result<hal::RenderInstants> KmsDisplay::render(const hal::WarpPlan* plan,
-                                                   const hal::StatusLine& status) {
+rt::Result<hal::RenderInstants> KmsDisplay::render(const hal::Scene& scene) {
   if (!renderer_->context().bind()) return std::unexpected(contextElsewhere());
   const hal::DisplayMode planned = mode_;
   attend(rt::now());
@@ -194,7 +193,7 @@ rt::Result<hal::RenderInstants> KmsDisplay::render(const hal::WarpPlan* plan,
   const bool fences = path_ == ScanoutPath::kDirect && screen_->takesFences();
   drawing.fence = {};
   drawing.instants =
-      renderer_->draw(buffers_->target(*buffer), plan, status, fences ? &drawing.fence : nullptr);
+      renderer_->draw(buffers_->target(*buffer), scene, fences ? &drawing.fence : nullptr);
   buffers_->finishDraw(*buffer);
   if (path_ == ScanoutPath::kCopied) drawing.instants.warp_end = rt::now();
   queue_.finishDraw(*buffer);

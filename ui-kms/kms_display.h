@@ -47,8 +47,7 @@ class KmsDisplay final : public hal::Display, public PictureSource {
   [[nodiscard]] hal::DisplayMode mode() const override { return mode_; }
   [[nodiscard]] std::string_view renderer() const override;
   [[nodiscard]] std::string_view uploadReason() const override { return renderer_->uploadReason(); }
-  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::WarpPlan* plan,
-                                                       const hal::StatusLine& status) override;
+  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& scene) override;
   [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t picture_id) override;
   [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override;
   [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override;

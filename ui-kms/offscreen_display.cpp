@@ -62,12 +62,11 @@ std::string_view OffscreenDisplay::renderer() const {
   return renderer_->context().renderer();
 }
 
-rt::Result<hal::RenderInstants> OffscreenDisplay::render(const hal::WarpPlan* plan,
-                                                         const hal::StatusLine& status) {
+rt::Result<hal::RenderInstants> OffscreenDisplay::render(const hal::Scene& scene) {
   if (!renderer_->context().bind()) return std::unexpected(contextElsewhere());
   const auto buffer = chain_.tryBeginDraw(rt::now());
   if (!buffer) return std::unexpected(buffer.error());
-  const hal::RenderInstants instants = renderer_->draw(targets_[*buffer], plan, status);
+  const hal::RenderInstants instants = renderer_->draw(targets_[*buffer], scene);
   chain_.finishDraw(*buffer);
   pacer_.onPicture(instants);
   return instants;

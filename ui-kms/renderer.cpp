@@ -55,30 +55,31 @@ void Renderer::warmUp(const RendererConfig& config) {
   const std::uint32_t width_px = config.source_width_px != 0 ? config.source_width_px : 64;
   const std::uint32_t height_px = config.source_height_px != 0 ? config.source_height_px : 64;
   const std::vector<std::byte> black(std::size_t{width_px} * height_px);
-  hal::WarpPlan plan;
+  hal::Scene scene{.count = 1};
+  hal::WarpPlan& plan = scene.layers[0].plan;
   plan.source = {black.data(), width_px, height_px, hal::PixelFormat::kBayerRG8};
   plan.H_camera_display = {1, 0, -16, 0, 1, -16, 0, 0, 1};  // inner and edge cells both
   plan.lens = {.fx_px = 1, .fy_px = 1, .max_radius = 1e9};
-  hal::StatusLine status;
-  std::strncpy(status.text.data(), "kagami", status.text.size() - 1);
+  std::strncpy(scene.status.text.data(), "kagami", scene.status.text.size() - 1);
   const RenderTarget target = makeRenderTarget(config.width_px, config.height_px);
-  draw(target, &plan, status);
+  draw(target, scene);
 }
 
-hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::WarpPlan* plan,
-                                   const hal::StatusLine& status, rt::UniqueFd* fence) {
+hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::Scene& scene,
+                                   rt::UniqueFd* fence) {
   hal::RenderInstants instants;
   instants.warp_submit = rt::now();
-  const bool drawable = plan != nullptr && plan->source.pixels != nullptr;
-  const auto source = drawable ? source_->load(plan->source) : SourceTexture::Loaded{};
+  const hal::WarpPlan& plan = scene.layers[0].plan;
+  const bool drawable = scene.count != 0 && plan.source.pixels != nullptr;
+  const auto source = drawable ? source_->load(plan.source) : SourceTexture::Loaded{};
   instants.imported = source.imported;
   instants.upload_end = rt::now();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glViewport(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px));
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  if (drawable) warp_->draw(*plan, source.colour);
-  if (status_) status_->draw(status);
+  if (drawable) warp_->draw(plan, source.colour);
+  if (status_) status_->draw(scene.status);
   if (fence != nullptr) *fence = context_->tryFence();
   if (fence == nullptr || !fence->valid()) glFinish();
   instants.warp_end = rt::now();

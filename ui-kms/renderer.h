@@ -27,8 +27,8 @@ struct RendererConfig {
   DemosaicSite demosaic = DemosaicSite::kAuto;
 };
 
-/// From a plan and a status line to a finished picture in a render target; what every display
-/// of this folder draws with.
+/// From a scene to a finished picture in a render target; what every display of this folder draws
+/// with.
 ///
 /// Threads  create() on a SCHED_OTHER thread; then one caller, which binds the context. With the
 ///          demosaicing on the CPU it ends OpenCV's own threading in this process.
@@ -51,8 +51,8 @@ class Renderer {
 
   /// Draws all of @p target; the pixels are written when it returns. With @p fence, and a driver
   /// that has fences, they are written when that one signals; without, it stays empty.
-  hal::RenderInstants draw(const RenderTarget& target, const hal::WarpPlan* plan,
-                           const hal::StatusLine& status, rt::UniqueFd* fence = nullptr);
+  hal::RenderInstants draw(const RenderTarget& target, const hal::Scene& scene,
+                           rt::UniqueFd* fence = nullptr);
 
  private:
   explicit Renderer(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {}

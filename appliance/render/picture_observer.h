@@ -8,7 +8,7 @@ namespace appliance {
 /// One picture that was just handed to the display.
 struct ShownPicture {
   const PictureRecord& record;
-  const hal::WarpPlan* plan;  ///< none: an empty picture
+  const hal::Scene& scene;
 };
 
 /// Receives every picture that was shown; the recorder is one.

@@ -144,7 +144,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
                        .button_event = first_command_};
 
   std::optional<PinnedFrame> frame;
-  std::optional<hal::WarpPlan> plan;
+  hal::Scene scene{.status = wanted.line};
   if (shot.trigger != 0) {
     frame = parts_.history.camera(shot.camera_shown).tryPin(shot.trigger);
     if (!frame) return false;  // overtaken since the decision; the next turn decides anew
@@ -158,12 +158,15 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     computeViews(parts_.rig, wanted.target.vector(), view_, views_);
     record.homographies_end = rt::now();
     const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];
-    plan = planWarp(camera, views_[shot.camera_shown],
-                    sourceOf(*frame, camera, parameters_.pixel_format));
-    if (plan && parameters_.flicker_compensation) evenOut(*plan, shot.camera_shown);
+    const auto plan = planWarp(camera, views_[shot.camera_shown],
+                               sourceOf(*frame, camera, parameters_.pixel_format));
+    if (plan) scene.layers[scene.count++].plan = *plan;
+    if (plan && parameters_.flicker_compensation) {
+      evenOut(scene.layers[0].plan, shot.camera_shown);
+    }
   }
 
-  const auto drawn = parts_.display.render(plan ? &*plan : nullptr, wanted.line);
+  const auto drawn = parts_.display.render(scene);
   const rt::Timestamp drawn_at = rt::now();
   const bool new_live = shot.mode == Mode::kLive && shot.trigger != on_screen_.shot.trigger;
   if (drawn && frame && new_live) {
@@ -187,7 +190,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
   record.commit = *commit;
   if (parts_.trace != nullptr) parts_.trace->record(record);
   if (parts_.observer != nullptr) {
-    parts_.observer->onPicture({.record = record, .plan = plan ? &*plan : nullptr});
+    parts_.observer->onPicture({.record = record, .scene = scene});
   }
   return true;
 }

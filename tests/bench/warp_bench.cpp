@@ -41,14 +41,15 @@ struct Scene {
     const double scale = 0.9 * kSourceHeightPx / height_px;
     plan.H_camera_display = {scale, 0.05, 20, -0.03, scale, 60, 1e-5, 2e-5, 1};
     plan.lens = {1180, 1180, 639.5, 511.5, {-0.1, 0.02, 1e-3, 1e-3, 0}, 2};
-    std::strncpy(status.text.data(), "delayed 1.50 s   camera 7", status.text.size() - 1);
+    std::strncpy(picture.status.text.data(), "delayed 1.50 s   camera 7",
+                 picture.status.text.size() - 1);
   }
 
   static constexpr std::size_t kSourcePixels = std::size_t{kSourceWidthPx} * kSourceHeightPx;
   cv::Size display;
   std::vector<std::byte> mosaic;
-  hal::WarpPlan plan;
-  hal::StatusLine status;
+  hal::Scene picture{.count = 1};
+  hal::WarpPlan& plan = picture.layers[0].plan;
 };
 
 Scene& sceneOf(const benchmark::State& state) {
@@ -102,7 +103,7 @@ void ours(benchmark::State& state) {
   }
   double warp_ns = 0;
   for (auto _ : state) {
-    const auto instants = screen->renderer->draw(*screen->target, &scene.plan, scene.status);
+    const auto instants = screen->renderer->draw(*screen->target, scene.picture);
     warp_ns +=
         std::chrono::duration<double, std::nano>(instants.warp_end - instants.upload_end).count();
   }

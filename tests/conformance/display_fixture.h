@@ -35,7 +35,10 @@ class DisplayConformance : public testing::TestWithParam<DisplayBackend> {
     plan_.lens = {.fx_px = 50, .fy_px = 50, .cx_px = 31.5, .cy_px = 23.5, .max_radius = 10};
   }
 
-  void renderOrFail() { ASSERT_TRUE(display_->render(&plan_, status_)); }
+  [[nodiscard]] hal::Scene scene() const {
+    return {.layers = {hal::ViewLayer{.plan = plan_}}, .count = 1, .status = status_};
+  }
+  void renderOrFail() { ASSERT_TRUE(display_->render(scene())); }
 
   /// Commits as soon as the display is ready for it.
   rt::Timestamp commitWhenReady(std::uint64_t picture_id) {

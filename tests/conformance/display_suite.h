@@ -29,7 +29,7 @@ TEST_P(DisplayConformance, NothingFlipsBeforeACommit) {
 
 TEST_P(DisplayConformance, RenderStampsItsStagesInOrder) {
   const rt::Timestamp before = rt::now();
-  const auto instants = display_->render(&plan_, status_);
+  const auto instants = display_->render(scene());
   ASSERT_TRUE(instants);
   EXPECT_LE(before, instants->warp_submit);
   EXPECT_LE(instants->warp_submit, instants->upload_end);
@@ -101,7 +101,7 @@ TEST_P(DisplayConformance, ACommitWithoutAPictureIsRefusedAndHarmless) {
 }
 
 TEST_P(DisplayConformance, RendersWithoutAPlanAndWithoutText) {
-  ASSERT_TRUE(display_->render(nullptr, hal::StatusLine{}));
+  ASSERT_TRUE(display_->render({}));
   commitWhenReady(1);
   EXPECT_TRUE(waitFlip());
 }
@@ -111,9 +111,9 @@ TEST_P(DisplayConformance, TakesEveryPixelFormatAndAChangeOfSize) {
   std::vector<std::byte> other(std::size_t{32} * 80, std::byte{50});
   for (const auto format : {kBayerRG8, kBayerGB8, kBayerGR8, kBayerBG8, kMono8}) {
     plan_.source = {other.data(), 32, 80, format};
-    ASSERT_TRUE(display_->render(&plan_, status_));
+    ASSERT_TRUE(display_->render(scene()));
     plan_.source = {pixels_.data(), 64, 48, format};
-    ASSERT_TRUE(display_->render(&plan_, status_));
+    ASSERT_TRUE(display_->render(scene()));
   }
 }
 
@@ -122,19 +122,19 @@ TEST_P(DisplayConformance, SurvivesAPlanOfNumbersThatAreNone) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, 0.0}) {
     plan_.H_camera_display.fill(bad);
-    ASSERT_TRUE(display_->render(&plan_, status_));
+    ASSERT_TRUE(display_->render(scene()));
   }
   plan_.lens = {.fx_px = 0, .fy_px = nan, .max_radius = infinity};
-  ASSERT_TRUE(display_->render(&plan_, status_));
+  ASSERT_TRUE(display_->render(scene()));
 }
 
 TEST_P(DisplayConformance, TakesTextThatIsNoText) {
   status_.text.fill('\xff');  // no utf-8
   status_.text.back() = '\0';
-  ASSERT_TRUE(display_->render(&plan_, status_));
+  ASSERT_TRUE(display_->render(scene()));
   status_.text.fill('W');  // wider than any screen
   status_.text.back() = '\0';
-  ASSERT_TRUE(display_->render(&plan_, status_));
+  ASSERT_TRUE(display_->render(scene()));
 }
 
 TEST_P(DisplayConformance, GoesFromThreadToThreadByDetach) {

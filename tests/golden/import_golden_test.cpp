@@ -68,8 +68,8 @@ struct Shown {
 
 Shown show(ui::OffscreenDisplay& display, const hal::SourceImage& source) {
   Shown shown;
-  const hal::WarpPlan plan = planOf(source);
-  const auto instants = display.render(&plan, {});
+  const auto instants =
+      display.render({.layers = {hal::ViewLayer{.plan = planOf(source)}}, .count = 1});
   EXPECT_TRUE(instants);
   shown.imported = instants && instants->imported;
   // A vblank of 1 ms may have to pass since the last picture.

@@ -84,7 +84,9 @@ class WarpGolden : public testing::Test {
   static cv::Mat3f shown(ui::OffscreenDisplay& display, const hal::WarpPlan* plan,
                          const hal::StatusLine& status = {}) {
     cv::Mat4b rgba(kDisplay);
-    EXPECT_TRUE(display.render(plan, status));
+    hal::Scene scene{.status = status};
+    if (plan != nullptr) scene.layers[scene.count++].plan = *plan;
+    EXPECT_TRUE(display.render(scene));
     // A vblank of 1 ms may have to pass since the last picture.
     const rt::Timestamp patience = rt::now() + std::chrono::seconds(20);
     while (!display.commit(1) && rt::now() < patience) std::this_thread::yield();

@@ -29,7 +29,7 @@ Outcome showAll(ui::KmsDisplay& display, int flips) {
   std::optional<hal::PageFlip> first;  // sets the mode: it has no vblank's stamp
   std::uint64_t picture = 0;
   while (flips > 0) {
-    if (display.render(nullptr, {})) {
+    if (display.render({})) {
       if (const auto commit = display.commit(picture + 1)) commits[++picture] = *commit;
     }
     // A little after the vblank, when its event is there.

@@ -119,7 +119,7 @@ LockRun runAt(double trigger_hz, rt::Nanoseconds start_phase) {
     rt::sleepUntil(fired->edge + 10ms + (fired->trigger % 7) * 50us);
     ready.add(rt::now() - fired->edge);
     noteFlips();
-    if (display.render(nullptr, {})) (void)display.commit(fired->trigger);
+    if (display.render({})) (void)display.commit(fired->trigger);
     genlock.input.publish({.timing = display.timing(), .ready_delay = ready.high()});
   }
   *trigger = {};

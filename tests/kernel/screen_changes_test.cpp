@@ -83,7 +83,7 @@ TEST_F(Unplugging, TwentyTimesThePictureComesBack) {
     card.setConnected(false);
     ASSERT_TRUE(viewer.waitFor(ScreenState::kNoScreen));
     EXPECT_THAT(messageOf(viewer.display()), HasSubstr("no screen at " + card.card()));
-    const auto refused = viewer.display().render(nullptr, {});
+    const auto refused = viewer.display().render({});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, rt::Errc::kDeviceLost);
     EXPECT_FALSE(viewer.display().timing());
@@ -151,7 +151,7 @@ TEST(ScreenOfAnother, TwentyTimesThePictureComesBackAfterAnotherProgramShowed) {
     viewer.display().releaseScreen();
     EXPECT_EQ(viewer.display().screen().state, ScreenState::kReleased);
     EXPECT_THAT(messageOf(viewer.display()), HasSubstr("kagami screen take"));
-    EXPECT_EQ(viewer.display().render(nullptr, {}).error().code, rt::Errc::kDeviceLost);
+    EXPECT_EQ(viewer.display().render({}).error().code, rt::Errc::kDeviceLost);
     ASSERT_TRUE(other.takeMaster());
     ASSERT_TRUE(other.showGrey());
     if (time % 4 == 0) {

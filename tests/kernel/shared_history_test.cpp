@@ -114,11 +114,11 @@ class NotingDisplay final : public hal::Display {
   [[nodiscard]] hal::DisplayMode mode() const override { return {320, 256, 60}; }
   [[nodiscard]] std::string_view renderer() const override { return "a test"; }
   [[nodiscard]] std::string_view uploadReason() const override { return {}; }
-  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::WarpPlan* plan,
-                                                       const hal::StatusLine& /*status*/) override {
+  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& scene) override {
+    const hal::SourceImage& source = scene.layers[0].plan.source;
     hal::RenderInstants instants;
-    instants.imported = plan != nullptr && plan->source.dma_buf.valid();
-    if (instants.imported) first_byte_ = firstByte(plan->source.dma_buf);
+    instants.imported = scene.count != 0 && source.dma_buf.valid();
+    if (instants.imported) first_byte_ = firstByte(source.dma_buf);
     return instants;
   }
   [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t /*picture_id*/) override {

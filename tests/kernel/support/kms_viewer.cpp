@@ -37,7 +37,8 @@ rt::Result<rt::Timestamp> KmsViewer::tryShow() {
     pixels_[i] = static_cast<std::byte>(i * 37 + pictures_ * 11 + (i / kWidthPx) * pictures_);
   }
   const hal::DisplayMode mode = display_->mode();
-  hal::WarpPlan plan;
+  hal::Scene scene{.count = 1};
+  hal::WarpPlan& plan = scene.layers[0].plan;
   plan.source = {
       .pixels = pixels_.data(), .width_px = kWidthPx, .height_px = kHeightPx, .dma_buf = {}};
   // A little smaller than the screen and turned, so that all kinds of pixels occur: inside, along
@@ -45,9 +46,8 @@ rt::Result<rt::Timestamp> KmsViewer::tryShow() {
   const double scale = 1.1 * kWidthPx / mode.width_px;
   plan.H_camera_display = {scale, 0.1 * scale, -2, -0.1 * scale, scale, 1, 0, 0, 1};
   plan.lens = {.fx_px = 50, .fy_px = 50, .cx_px = 31.5, .cy_px = 23.5, .max_radius = 10};
-  hal::StatusLine status;
-  std::snprintf(status.text.data(), status.text.size(), "picture %lu", pictures_);
-  const auto drawn = display_->render(&plan, status);
+  std::snprintf(scene.status.text.data(), scene.status.text.size(), "picture %lu", pictures_);
+  const auto drawn = display_->render(scene);
   if (!drawn) return std::unexpected(drawn.error());
   return display_->commit(pictures_);
 }
