@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "appliance/capture/camera_settings.h"
 #include "appliance/capture/camera_status.h"
 #include "appliance/capture/genlock_text.h"
 #include "appliance/capture/trigger_wiring.h"
@@ -49,8 +50,6 @@ Appliance::Appliance(const Config& config, const Rig& rig)
     : config_(config),
       rig_(rig),
       period_(periodOf(config.trigger.rate_hz)),
-      target_m_{rig.target_m.x(), rig.target_m.y(), rig.target_m.z()},
-      target_({target_m_[0], target_m_[1], target_m_[2]}),
       board_(static_cast<std::uint32_t>(rig.cameras.size())) {}
 
 std::expected<std::unique_ptr<Appliance>, std::string> Appliance::start(
@@ -181,6 +180,8 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
                   .trace = producer(kRenderTrace),
                   .observer = observer},
       RenderParameters{.trigger_period = period_,
+                       .edge_to_exposure_middle = microseconds(commonDelay_us(config_.cameras) +
+                                                               config_.cameras.exposure_us / 2),
                        .zoom = config_.display.zoom,
                        .pixel_format = config_.cameras.pixel_format,
                        .director = {.sweep_views_per_second = config_.director.sweep_views_per_s,
@@ -276,11 +277,21 @@ bool Appliance::command(const Command& command) {
   return taken;
 }
 
+/// What a person says of the target holds from the moment on screen on.
+rt::Timestamp Appliance::shownExposure() const {
+  const rt::Timestamp shown = render_loop_->status().exposure_middle;
+  return shown == rt::Timestamp{} ? rt::now() : shown;
+}
+
 bool Appliance::setTarget(const std::array<double, 3>& target_m) {
-  target_m_ = target_m;
-  target_.set({target_m[0], target_m[1], target_m[2]});
+  target_.setByHand({target_m[0], target_m[1], target_m[2]}, shownExposure());
   board_.wake_render.ring();
   return true;
+}
+
+void Appliance::releaseTarget() {
+  target_.release(shownExposure());
+  board_.wake_render.ring();
 }
 
 void Appliance::setScreenReleased(bool released) {
@@ -291,21 +302,23 @@ void Appliance::setScreenReleased(bool released) {
 Status Appliance::status() const {
   const RenderStatus render = render_loop_->status();
   const auto to_ms = [](rt::Nanoseconds t) { return static_cast<std::uint32_t>(t / 1'000'000ns); };
-  Status status{.mode = render.shot.mode,
-                .view_wanted = render.shot.camera_wanted,
-                .view_shown = render.shot.camera_shown,
-                .delay_ms = to_ms(render.shot.delay),
-                .history_ms = to_ms(
-                    std::min<std::uint64_t>(board_.edges.newest(), history_->sets()) * period_),
-                .target_m = target_m_,
-                .shown_hz = render.shown_hz,
-                .triggers = board_.edges.newest(),
-                .genlock = board_.genlock.status.load(),
-                .degraded = degraded_,
-                .renderer = renderer_,
-                .screen = render.screen.state,
-                .screen_message = render.screen.message.data(),
-                .source_path = source_path_};
+  Status status{
+      .mode = render.shot.mode,
+      .view_wanted = render.shot.camera_wanted,
+      .view_shown = render.shot.camera_shown,
+      .delay_ms = to_ms(render.shot.delay),
+      .history_ms =
+          to_ms(std::min<std::uint64_t>(board_.edges.newest(), history_->sets()) * period_),
+      .target_m = {render.target.point.x_m, render.target.point.y_m, render.target.point.z_m},
+      .target_origin = std::string(nameOf(render.target.origin)),
+      .shown_hz = render.shown_hz,
+      .triggers = board_.edges.newest(),
+      .genlock = board_.genlock.status.load(),
+      .degraded = degraded_,
+      .renderer = renderer_,
+      .screen = render.screen.state,
+      .screen_message = render.screen.message.data(),
+      .source_path = source_path_};
   if (trigger_loop_->failing()) {
     status.degraded.emplace_back(
         "trigger: pulses do not leave: the line's device is gone: check it, then restart");

@@ -57,6 +57,7 @@ class Appliance final : public ControlSink, public StatusSource {
 
   [[nodiscard]] bool command(const Command& command) override;
   [[nodiscard]] bool setTarget(const std::array<double, 3>& target_m) override;
+  void releaseTarget() override;
   void setScreenReleased(bool released) override;
   [[nodiscard]] Status status() const override;
 
@@ -74,6 +75,7 @@ class Appliance final : public ControlSink, public StatusSource {
                                                              const ThreadSchedule& how,
                                                              std::function<void(std::stop_token)>);
   void stopPipeline();
+  [[nodiscard]] rt::Timestamp shownExposure() const;
   [[nodiscard]] RunRecord runRecord(const hal::Display& display) const;
   [[nodiscard]] SummaryRecord summary() const;
 
@@ -84,7 +86,6 @@ class Appliance final : public ControlSink, public StatusSource {
 
   std::string renderer_;
   std::string source_path_;  // how frames reach the renderer
-  std::array<double, 3> target_m_;
   TargetTrack target_;
   CaptureBoard board_;
   std::unique_ptr<FrameHistory> history_;

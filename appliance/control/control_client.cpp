@@ -73,6 +73,9 @@ ControlClient::Answer ControlClient::setView(std::uint32_t view) {
 ControlClient::Answer ControlClient::setTarget(const std::array<double, 3>& target_m) {
   return withoutReply(call("SetTarget", "ddd", target_m[0], target_m[1], target_m[2]));
 }
+ControlClient::Answer ControlClient::releaseTarget() {
+  return withoutReply(call("ReleaseTarget", ""));
+}
 ControlClient::Answer ControlClient::freeze() {
   return withoutReply(call("Freeze", ""));
 }

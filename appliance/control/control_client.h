@@ -24,6 +24,7 @@ class ControlClient {
   [[nodiscard]] Answer setDelay(std::uint32_t delay_ms);
   [[nodiscard]] Answer setView(std::uint32_t view);  ///< from 1
   [[nodiscard]] Answer setTarget(const std::array<double, 3>& target_m);
+  [[nodiscard]] Answer releaseTarget();
   [[nodiscard]] Answer freeze();
   [[nodiscard]] Answer sweep();
   [[nodiscard]] Answer releaseScreen();

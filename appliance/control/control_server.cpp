@@ -75,6 +75,11 @@ int onSetTarget(sd_bus_message* message, void* userdata, sd_bus_error* error) {
   return sd_bus_reply_method_return(message, "");
 }
 
+int onReleaseTarget(sd_bus_message* message, void* userdata, sd_bus_error* /*error*/) {
+  serverOf(userdata).sink.releaseTarget();
+  return sd_bus_reply_method_return(message, "");
+}
+
 int onFreeze(sd_bus_message* message, void* userdata, sd_bus_error* error) {
   return answer(message, serverOf(userdata), Command{Command::Kind::kFreezeToggle}, error);
 }
@@ -196,6 +201,8 @@ const auto kVtable = std::to_array<sd_bus_vtable>({
                             kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("SetTarget", SD_BUS_ARGS("d", x_m, "d", y_m, "d", z_m),
                             SD_BUS_NO_RESULT, onSetTarget, kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("ReleaseTarget", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onReleaseTarget,
+                            kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Freeze", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onFreeze, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Sweep", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onSweep, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("ReleaseScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onScreen<true>,

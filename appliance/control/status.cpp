@@ -36,6 +36,7 @@ std::string toJson(const Status& status) {
       {"delay_ms", status.delay_ms},
       {"history_ms", status.history_ms},
       {"target_m", status.target_m},
+      {"target_origin", status.target_origin},
       {"shown_hz", status.shown_hz},
       {"triggers", status.triggers},
       {"frames_lost", status.frames_lost},

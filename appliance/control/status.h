@@ -21,9 +21,10 @@ struct Status {
   std::uint32_t view_wanted = 0;
   std::uint32_t view_shown = 0;
   std::uint32_t delay_ms = 0;
-  std::uint32_t history_ms = 0;  ///< how far back the stored moments reach
-  std::array<double, 3> target_m{};
-  double shown_hz = 0;  ///< distinct frame sets a second
+  std::uint32_t history_ms = 0;      ///< how far back the stored moments reach
+  std::array<double, 3> target_m{};  ///< of the shown moment
+  std::string target_origin;         ///< how that point is known: "measured", "set by hand" ...
+  double shown_hz = 0;               ///< distinct frame sets a second
   std::uint64_t triggers = 0;
   std::uint64_t frames_lost = 0;
   std::uint64_t frames_away = 0;
@@ -64,6 +65,8 @@ class ControlSink {
   [[nodiscard]] virtual bool command(const Command& command) = 0;
   /// Rig frame, metres; finite.
   [[nodiscard]] virtual bool setTarget(const std::array<double, 3>& target_m) = 0;
+  /// What was measured counts again, from the shown moment on.
+  virtual void releaseTarget() = 0;
   /// True: another program may show something; false: the screen is ours again.
   virtual void setScreenReleased(bool released) = 0;
 };

@@ -31,6 +31,7 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
       parameters_(parameters),
       view_{.width_px = 0, .height_px = 0, .zoom = parameters.zoom},
       stored_(parts.history, parts.board.edges),
+      target_(parts.target),
       director_(parameters.director),
       views_(parts.rig.cameras.size()),
       allowance_(kShareOfPictures, parameters.trigger_period) {}
@@ -57,7 +58,9 @@ void RenderLoop::turn() noexcept {
   command_count_ = 0;
   wanted.line = statusLine(wanted.shot, parts_.history.cameras());
   wanted.target_point_begin = rt::now();
-  wanted.target = parts_.target.at(parts_.board.edges.edge(wanted.shot.trigger));
+  wanted.exposure_middle = exposureMiddle(wanted.shot.trigger);
+  const Eigen::Vector3d& rig_m = parts_.rig.target_m;
+  wanted.target = target_.at(wanted.exposure_middle, {rig_m.x(), rig_m.y(), rig_m.z()});
   wanted.target_point_end = rt::now();
   parts_.board.shown_camera.store(wanted.shot.camera_shown, std::memory_order_relaxed);
 
@@ -71,6 +74,8 @@ void RenderLoop::turn() noexcept {
   recordFlips();
   talkToGenlock();
   counters_.shot = wanted.shot;
+  counters_.target = wanted.target;
+  counters_.exposure_middle = wanted.exposure_middle;
   status_.publish(counters_);
   mode_.store(wanted.shot.mode, std::memory_order_relaxed);
 }
@@ -103,7 +108,13 @@ bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
   return picture_id_ != 0 && !stale_ && first_command_ == rt::Timestamp{} &&
          wanted.shot.trigger == on_screen_.shot.trigger &&
          wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
-         wanted.line.view() == on_screen_.line.view() && wanted.target == on_screen_.target;
+         wanted.line.view() == on_screen_.line.view() &&
+         !looksDifferent(on_screen_.target, wanted.target);
+}
+
+rt::Timestamp RenderLoop::exposureMiddle(std::uint64_t trigger) const noexcept {
+  const rt::Timestamp edge = parts_.board.edges.edge(trigger);
+  return edge == rt::Timestamp{} ? edge : edge + parameters_.edge_to_exposure_middle;
 }
 
 /// A live picture's vblank is not taken away from it by an older one: not by one that shows the
@@ -155,7 +166,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
     const hal::DisplayMode mode = parts_.display.mode();
     view_.width_px = mode.width_px;
     view_.height_px = mode.height_px;
-    computeViews(parts_.rig, wanted.target.vector(), view_, views_);
+    computeViews(parts_.rig, wanted.target.point.vector(), view_, views_);
     record.homographies_end = rt::now();
     const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];
     const auto plan = planWarp(camera, views_[shot.camera_shown],

@@ -33,7 +33,9 @@ struct RenderStatus {
   std::uint64_t skipped = 0;  ///< pictures that the display was not ready for
   double shown_hz = 0;  ///< distinct frame sets a second, over the last whole second of pictures
   hal::ScreenStatus screen;
-  FlickerReport flicker;  ///< of the light; nothing but zeros without compensation
+  FlickerReport flicker;          ///< of the light; nothing but zeros without compensation
+  Target target;                  ///< of the shown moment
+  rt::Timestamp exposure_middle;  ///< of the shown moment; the epoch: not known
 };
 
 /// Everything the render loop works with; all outlives it.
@@ -41,7 +43,7 @@ struct RenderParts {
   const Rig& rig;
   FrameHistory& history;
   CaptureBoard& board;
-  TargetTrack& target;
+  const TargetTrack& target;
   hal::Display& display;
   TraceProducer* trace;       ///< none: not traced
   PictureObserver* observer;  ///< none: no observer
@@ -49,6 +51,7 @@ struct RenderParts {
 
 struct RenderParameters {
   rt::Nanoseconds trigger_period;
+  rt::Nanoseconds edge_to_exposure_middle{0};  ///< opto delay, and half of the exposure
   double zoom = 1;
   hal::PixelFormat pixel_format = hal::PixelFormat::kBayerRG8;
   DirectorParameters director;
@@ -87,7 +90,8 @@ class RenderLoop {
   struct Wanted {
     Shot shot;
     hal::StatusLine line;
-    TargetPoint target;
+    rt::Timestamp exposure_middle;
+    Target target;
     rt::Timestamp target_point_begin;
     rt::Timestamp target_point_end;
   };
@@ -95,6 +99,7 @@ class RenderLoop {
   void turn() noexcept;
   void takeCommands() noexcept;
   void followScreen() noexcept;
+  [[nodiscard]] rt::Timestamp exposureMiddle(std::uint64_t trigger) const noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
   [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
@@ -108,6 +113,7 @@ class RenderLoop {
   const RenderParameters parameters_;
   ViewParameters view_;  // of the screen's present mode
   HistoryViews stored_;
+  TargetReader target_;
   Director director_;
   CommandQueue panel_commands_;
   CommandQueue control_commands_;

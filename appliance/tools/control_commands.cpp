@@ -65,11 +65,21 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
 
   CLI::App* target = kagami.add_subcommand("target", "Set the point that stays in the centre");
   const auto target_m = std::make_shared<std::vector<double>>();
-  target->add_option("POSITION", *target_m, "metres in the rig frame, +Z up")
-      ->required()
-      ->expected(3)
-      ->delimiter(',');
-  target->callback([&place, target_m] {
+  CLI::Option* position = target
+                              ->add_option("POSITION", *target_m,
+                                           "metres in the rig frame, +Z up; holds from the "
+                                           "shown moment on")
+                              ->expected(3)
+                              ->delimiter(',');
+  const auto release = std::make_shared<bool>(false);
+  target->add_flag("--release", *release, "follow what is measured again, or the rig's point")
+      ->excludes(position);
+  target->callback([&place, target_m, release] {
+    if (*release) {
+      expectDone(connect(place).releaseTarget());
+      return;
+    }
+    if (target_m->empty()) throw CLI::RequiredError("POSITION or --release");
     expectDone(connect(place).setTarget({(*target_m)[0], (*target_m)[1], (*target_m)[2]}));
   });
 

@@ -19,7 +19,7 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         head.data(), head.size(),
         "mode     %s, %.3f s behind live, %.1f s stored\n"
         "view     %d of %zu%s\n"
-        "target   %.3f %.3f %.3f m\n"
+        "target   %.3f %.3f %.3f m, %s\n"
         "shown    %.1f frame sets a second, by %s\n"
         "source   %s\n"
         "frames   %llu triggers; %llu frames lost, %llu incomplete, %llu of cameras that were "
@@ -28,7 +28,8 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
         status.at("history_ms").get<double>() / 1e3, view, status.at("cameras").size(),
         substitute.c_str(), status.at("target_m").at(0).get<double>(),
         status.at("target_m").at(1).get<double>(), status.at("target_m").at(2).get<double>(),
-        status.at("shown_hz").get<double>(), status.at("renderer").get<std::string>().c_str(),
+        status.value("target_origin", "").c_str(), status.at("shown_hz").get<double>(),
+        status.at("renderer").get<std::string>().c_str(),
         status.at("source_path").get<std::string>().c_str(),
         status.at("triggers").get<unsigned long long>(),
         status.at("frames_lost").get<unsigned long long>(),

@@ -37,8 +37,13 @@ TEST_F(CommandLine, LeadsTheBoxThroughItsModes) {
   EXPECT_TRUE(becomes(
       [](const json& status) { return status["mode"] == "frozen" && status["view_shown"] == 2; }));
   EXPECT_EQ(kagami({"target", "0.1", "0.2", "1.1"}).exit_status, 0);
-  EXPECT_TRUE(becomes(
-      [](const json& status) { return status["target_m"] == json::array({0.1, 0.2, 1.1}); }));
+  EXPECT_TRUE(becomes([](const json& status) {
+    return status["target_m"] == json::array({0.1, 0.2, 1.1}) &&
+           status["target_origin"] == "set by hand";
+  }));
+  EXPECT_EQ(kagami({"target", "--release"}).exit_status, 0);
+  EXPECT_TRUE(becomes([](const json& status) { return status["target_origin"] == "the rig's"; }));
+  EXPECT_NE(kagami({"target"}).exit_status, 0);
   EXPECT_EQ(kagami({"mode", "live"}).exit_status, 0);
   EXPECT_TRUE(becomes([](const json& status) { return status["mode"] == "live"; }));
 }

@@ -39,6 +39,10 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     target_m_ = target_m;
     return true;
   }
+  void releaseTarget() override {
+    const std::scoped_lock lock(mutex_);
+    target_m_ = {0, 0, 1};
+  }
   void setScreenReleased(bool released) override {
     const std::scoped_lock lock(mutex_);
     screen_ = released ? hal::ScreenState::kReleased : hal::ScreenState::kShowing;
@@ -129,6 +133,8 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
                            Command{Command::Kind::kFreezeToggle}, Command{Command::Kind::kSweep}));
   EXPECT_TRUE(kagami.setTarget({1, 2, 0.5}).has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{1, 2, 0.5}));
+  EXPECT_TRUE(kagami.releaseTarget().has_value());
+  EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{0, 0, 1}));
   EXPECT_TRUE(kagami.releaseScreen().has_value());
   EXPECT_EQ(box_.status().screen, hal::ScreenState::kReleased);
   EXPECT_THAT(kagami.status().value(), HasSubstr("\"state\":\"released\""));

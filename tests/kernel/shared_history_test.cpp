@@ -163,7 +163,7 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
   ASSERT_NE(history, nullptr);
   ASSERT_EQ(history->notShared(), "");
   CaptureBoard board(1);
-  TargetTrack target({0, 0, 0});
+  const TargetTrack target;
   NotingDisplay display;
   ImportCounter observer;
   RenderLoop loop({.rig = rig,
