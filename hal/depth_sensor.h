@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,10 +10,14 @@
 
 namespace hal {
 
-/// Pinhole of a registered pair; integer coordinates are pixel centres.
+/// Pinhole and Brown-Conrady distortion; integer coordinates are pixel centres.
 struct DepthLens {
   double focal_x_px = 0, focal_y_px = 0;
   double centre_x_px = 0, centre_y_px = 0;
+  /// In OpenCV's order: k1, k2, p1, p2, k3. Zeros: none, or the sensor does not report it.
+  std::array<double, 5> distortion{};
+
+  friend bool operator==(const DepthLens&, const DepthLens&) = default;
 };
 
 /// One registered pair of pictures, borrowed until the next call of the sensor.
@@ -22,10 +27,12 @@ struct DepthFrame {
       colour_rgb;  ///< the same size in pixels, sRGB; empty without colour
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
-  DepthLens lens;
-  std::uint64_t number = 0;   ///< counted by the sensor: a gap is a lost picture
-  rt::Timestamp exposure;     ///< when the light was taken: clock fitted, latency removed
-  rt::Timestamp frame_ready;  ///< it arrived on this machine
+  DepthLens lens;            ///< of the depth picture; the colour camera's if depth is registered
+  DepthLens colour_lens;     ///< of the colour picture
+  std::uint64_t number = 0;  ///< counted by the sensor: a gap is a lost picture
+  rt::Timestamp exposure;    ///< when depth's light was taken: clock fitted, latency removed
+  rt::Timestamp colour_exposure;  ///< when colour's light was taken; the epoch without colour
+  rt::Timestamp frame_ready;      ///< both arrived on this machine
 };
 
 enum class DepthState : std::uint8_t {
@@ -54,9 +61,9 @@ struct DepthStatus {
 /// The sensor supervises itself while its caller waits: one that goes is looked for, and comes
 /// back as it was.
 ///
-/// Threads  One caller: the tracker. status(): any thread.
-/// RT       Blocks; never called from a real-time thread.
-/// Errors   No frame within the timeout is nullopt; status() tells silence, loss and end apart.
+/// Threads  One caller: the depth loop, which copies each pair for all readers. status(): any
+/// thread. RT       Blocks; never called from a real-time thread. Errors   No frame within the
+/// timeout is nullopt; status() tells silence, loss and end apart.
 class DepthSensor {
  public:
   virtual ~DepthSensor() = default;

@@ -6,7 +6,7 @@
 namespace appliance {
 
 void LampFinder::add(const hal::DepthFrame& frame) {
-  Picture picture{.at = frame.exposure, .cells = {}};
+  Picture picture{.at = frame.colour_exposure, .cells = {}};
   const std::uint32_t wide = frame.width_px / kColumns;
   const std::uint32_t high = frame.height_px / kRows;
   for (std::uint32_t y = 0; y < kRows * high; ++y) {

@@ -251,7 +251,10 @@ void Device::Implementation::openColour(const DeviceRequest& request) {
   facts.colour = mode.getPixelFormat() == ni::PIXEL_FORMAT_RGB888 &&
                  modeOf(mode).width_px == facts.width_px &&
                  modeOf(mode).height_px == facts.height_px;
-  if (facts.colour) return;
+  if (facts.colour) {
+    facts.colour_lens = lensOf(colour);
+    return;
+  }
   facts.remarks.push_back("its colour has no RGB of " + std::to_string(facts.width_px) + "x" +
                           std::to_string(facts.height_px) +
                           ", the size of its depth; depth goes on without it");
@@ -277,7 +280,7 @@ void Device::Implementation::settle() {
   // Registered depth is seen through the colour camera's lens.
   if (device.getImageRegistrationMode() == ni::IMAGE_REGISTRATION_DEPTH_TO_COLOR &&
       colour.getHorizontalFieldOfView() > 0 && colour.getVerticalFieldOfView() > 0) {
-    facts.lens = lensOf(colour);
+    facts.lens = facts.colour_lens;
   }
   device.setDepthColorSyncEnabled(true);  // not every driver can: the pairs are made by stamps
 }
@@ -367,6 +370,7 @@ void Device::Implementation::lend(DevicePair& pair) {
           .stamp_us = lent.depth.frame.getTimestamp(),
           .frame_ready = lent.depth.at};
   if (!lent.colour) return;
+  pair.colour_stamp_us = lent.colour->frame.getTimestamp();
   pair.colour_rgb = rowsOf(lent.colour->frame, std::size_t{3} * facts.width_px, colour_rows);
   pair.frame_ready = std::max(pair.frame_ready, lent.colour->at);
 }

@@ -26,6 +26,7 @@ struct DevicePair {
   std::span<const std::uint8_t> colour_rgb;  ///< empty: none came with it
   std::uint64_t number = 0;
   std::uint64_t stamp_us = 0;
+  std::uint64_t colour_stamp_us = 0;
   rt::Timestamp frame_ready;
 };
 
@@ -55,7 +56,8 @@ class Device {
     std::string name;
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
-    DepthLens lens;
+    DepthLens lens;  ///< of depth
+    DepthLens colour_lens;
     bool colour = false;
     bool recording = false;
     std::vector<std::string> remarks;  ///< what is less than asked for

@@ -74,14 +74,17 @@ std::optional<DepthFrame> FolderSensor::waitFrame(rt::Nanoseconds timeout) {
     status_.state = DepthState::kStreaming;
     ++status_.frames;
   }
-  return DepthFrame{.depth_mm = lent_.pictures.depth_mm,
-                    .colour_rgb = lent_.pictures.colour_rgb,
-                    .width_px = recording_.width_px(),
-                    .height_px = recording_.height_px(),
-                    .lens = recording_.lens(),
-                    .number = lent_.entry->number,
-                    .exposure = lent_.exposure,
-                    .frame_ready = rt::now()};
+  return DepthFrame{
+      .depth_mm = lent_.pictures.depth_mm,
+      .colour_rgb = lent_.pictures.colour_rgb,
+      .width_px = recording_.width_px(),
+      .height_px = recording_.height_px(),
+      .lens = recording_.lens(),
+      .colour_lens = recording_.lens(),
+      .number = lent_.entry->number,
+      .exposure = lent_.exposure,
+      .colour_exposure = lent_.pictures.colour_rgb.empty() ? rt::Timestamp{} : lent_.exposure,
+      .frame_ready = rt::now()};
 }
 
 }  // namespace hal::openni

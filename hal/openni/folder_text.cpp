@@ -28,6 +28,20 @@ std::optional<std::array<double, 2>> pairOf(const toml::table& table, std::strin
   return pair;
 }
 
+/// Five numbers, or none at all.
+std::optional<std::array<double, 5>> distortionOf(const toml::table& table) {
+  std::array<double, 5> distortion{};
+  if (!table.contains("distortion")) return distortion;
+  const toml::array* array = table["distortion"].as_array();
+  if (array == nullptr || array->size() != distortion.size()) return std::nullopt;
+  for (std::size_t i = 0; i < distortion.size(); ++i) {
+    const auto value = array->get(i)->value<double>();
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    distortion[i] = *value;
+  }
+  return distortion;
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> folderNumber(std::string_view text) {
@@ -64,7 +78,10 @@ std::expected<FolderSensorFile, std::string> parseFolderSensor(std::string_view 
                           .rate_hz = table["rate_hz"].value_or(30.0)};
   const std::array<double, 2> middle{0.5 * (sensor.width_px - 1.0), 0.5 * (sensor.height_px - 1.0)};
   const auto centre = pairOf(table, "centre_px", kLargestSide_px).value_or(middle);
-  sensor.lens = {(*focal)[0], (*focal)[1], centre[0], centre[1]};
+  const auto distortion = distortionOf(table);
+  if (!distortion)
+    return std::unexpected(where + ": distortion must be five numbers: k1, k2, p1, p2, k3");
+  sensor.lens = {(*focal)[0], (*focal)[1], centre[0], centre[1], *distortion};
   if (!(sensor.rate_hz >= 0.1 && sensor.rate_hz <= 1000))
     return std::unexpected(where + ": rate_hz must be 0.1 to 1000");
   return sensor;

@@ -46,6 +46,11 @@ std::expected<void, std::string> FolderWriter::begin(const DepthFrame& frame,
          << frame.width_px << ", " << frame.height_px << "]\nfocal_px = [" << frame.lens.focal_x_px
          << ", " << frame.lens.focal_y_px << "]\ncentre_px = [" << frame.lens.centre_x_px << ", "
          << frame.lens.centre_y_px << "]\n";
+  if (frame.lens.distortion != DepthLens{}.distortion) {
+    const auto& k = frame.lens.distortion;
+    sensor << "distortion = [" << k[0] << ", " << k[1] << ", " << k[2] << ", " << k[3] << ", "
+           << k[4] << "]\n";
+  }
   stamps_.open(folder_ / "stamps.csv");
   stamps_ << "number,stamp_us\n";
   first_ = frame.exposure;

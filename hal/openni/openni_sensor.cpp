@@ -14,10 +14,11 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = WireMessage::Kind;
 
-constexpr rt::Nanoseconds kRestart = 200ms;  // from one worker's end to the next one's start
-constexpr rt::Nanoseconds kSilence = 1s;     // of a streaming sensor
-constexpr rt::Nanoseconds kOpening = 10s;    // a driver may take its time
+constexpr rt::Nanoseconds kSilence = 1s;  // of a streaming sensor
 constexpr rt::Nanoseconds kForever = 24h * 365;
+
+constexpr const char* kOtherVersion =
+    "depth sensor: kagami-depth is of another version than this program: restart kagamid";
 
 std::vector<std::string> argumentsOf(const SensorSettings& settings) {
   return {"--source",  settings.source,
@@ -59,7 +60,7 @@ std::optional<DepthFrame> OpenniSensor::waitFrame(rt::Nanoseconds timeout) {
       }
       const WireMessage message = *std::exchange(due_, std::nullopt);
       lent_ = message.slot;
-      return frameOf(message, due_exposure_);
+      return frameOf(message);
     }
     turn(until);
     if (!due_ && rt::now() >= until) return std::nullopt;
@@ -75,7 +76,7 @@ void OpenniSensor::turn(rt::Timestamp until) {
     auto worker = WorkerProcess::start(argumentsOf(settings_));
     if (!worker) {
       note([&](DepthStatus& status) { status.message = worker.error(); });
-      start_at_ = rt::now() + 1s;
+      start_at_ = rt::now() + pause_.next(RestartPause::End::kFailure);
       return;
     }
     worker_ = std::move(*worker);
@@ -87,14 +88,16 @@ void OpenniSensor::turn(rt::Timestamp until) {
       heard_ = rt::now();
       return onMessage(received);
     case ReceiveResult::kClosed:
-      return lose("depth sensor: its driver crashed; starting it anew");
+      return lose("depth sensor: its driver crashed; starting it again");
+    case ReceiveResult::kForeign:
+      return lose(kOtherVersion);
     case ReceiveResult::kNothing:
       break;
   }
   if (rt::now() >= silentUntil()) {
     worker_->kill();
     return lose("depth sensor " + status_.name +
-                " fell silent: starting it anew; if that lasts, "
+                " fell silent: starting it again; if that lasts, "
                 "check its cable and power");
   }
   pollfd wire{.fd = worker_->socket(), .events = POLLIN, .revents = 0};
@@ -105,7 +108,7 @@ void OpenniSensor::turn(rt::Timestamp until) {
 
 rt::Timestamp OpenniSensor::silentUntil() const {
   if (streamed_ && worker_->hello().recording) return rt::now() + kForever;
-  return heard_ + (streamed_ ? kSilence : kOpening);
+  return heard_ + (streamed_ ? kSilence : settings_.opening_patience);
 }
 
 void OpenniSensor::onMessage(Received& received) {
@@ -120,15 +123,16 @@ void OpenniSensor::onMessage(Received& received) {
     case Kind::kEnd:
       return onEnd();
     case Kind::kFail:
-      return lose(std::string(message.textView()));
+      return lose(std::string(message.textView()),
+                  message.unplugged ? RestartPause::End::kUnplugged : RestartPause::End::kFailure);
+    case Kind::kAlive:
     case Kind::kRelease:
-      return;  // ours alone
+      return;
   }
 }
 
 void OpenniSensor::onHello(const WireMessage& message, rt::UniqueFd memory) {
-  if (!worker_->accept(message, std::move(memory)))
-    return lose("depth sensor: kagami-depth is of another version than this program");
+  if (!worker_->accept(message, std::move(memory))) return lose(kOtherVersion);
   clock_.emplace();
   last_number_ = 0;
   note([&](DepthStatus& status) {
@@ -140,10 +144,10 @@ void OpenniSensor::onHello(const WireMessage& message, rt::UniqueFd memory) {
 }
 
 void OpenniSensor::onFrame(const WireMessage& message) {
-  if (!worker_->accepted() || message.slot >= kWireSlots)
-    return lose("depth sensor: kagami-depth is of another version than this program");
+  if (!worker_->accepted() || message.slot >= kWireSlots) return lose(kOtherVersion);
   due_ = message;
-  due_exposure_ = exposureOf(message);
+  setExposures(message);
+  pause_.onPicture(rt::now());
   std::uint64_t missing = 0;
   if (last_number_ != 0 && message.number > last_number_ + 1)
     missing = message.number - last_number_ - 1;
@@ -160,13 +164,23 @@ void OpenniSensor::onFrame(const WireMessage& message) {
   });
 }
 
-rt::Timestamp OpenniSensor::exposureOf(const WireMessage& message) {
+/// Both pictures are stamped by the sensor's one clock.
+void OpenniSensor::setExposures(const WireMessage& message) {
+  due_colour_exposure_ = {};
   if (worker_->hello().recording) {
-    return play_clock_.due(message.stamp_us, rt::now());
+    due_exposure_ = play_clock_.due(message.stamp_us, rt::now());
+    const std::chrono::microseconds apart(static_cast<std::int64_t>(message.colour_stamp_us) -
+                                          static_cast<std::int64_t>(message.stamp_us));
+    if (message.with_colour) due_colour_exposure_ = due_exposure_ + apart;
+    return;
   }
   const rt::Timestamp arrival = rt::fromNs(message.frame_ready_ns);
   clock_->add(message.stamp_us, arrival);
-  return std::min(clock_->earliestArrival(message.stamp_us), arrival) - settings_.latency;
+  const auto exposureAt = [&](std::uint64_t stamp_us) {
+    return std::min(clock_->earliestArrival(stamp_us), arrival) - settings_.latency;
+  };
+  due_exposure_ = exposureAt(message.stamp_us);
+  if (message.with_colour) due_colour_exposure_ = exposureAt(message.colour_stamp_us);
 }
 
 void OpenniSensor::onEnd() {
@@ -182,7 +196,7 @@ void OpenniSensor::onEnd() {
   start_at_ = rt::now() + kForever;
 }
 
-void OpenniSensor::lose(const std::string& why) {
+void OpenniSensor::lose(const std::string& why, RestartPause::End end) {
   lent_.reset();  // gone with its worker
   due_.reset();
   worker_.reset();
@@ -192,10 +206,10 @@ void OpenniSensor::lose(const std::string& why) {
     if (status.frames > 0) status.state = DepthState::kLost;
     status.message = why;
   });
-  start_at_ = rt::now() + kRestart;
+  start_at_ = rt::now() + pause_.next(end);
 }
 
-DepthFrame OpenniSensor::frameOf(const WireMessage& message, rt::Timestamp exposure) {
+DepthFrame OpenniSensor::frameOf(const WireMessage& message) {
   const WireMessage& hello = worker_->hello();
   return {
       .depth_mm = worker_->depth(message.slot),
@@ -204,8 +218,10 @@ DepthFrame OpenniSensor::frameOf(const WireMessage& message, rt::Timestamp expos
       .width_px = hello.width_px,
       .height_px = hello.height_px,
       .lens = hello.lens,
+      .colour_lens = hello.colour_lens,
       .number = message.number,
-      .exposure = exposure,
+      .exposure = due_exposure_,
+      .colour_exposure = due_colour_exposure_,
       .frame_ready = worker_->hello().recording ? rt::now() : rt::fromNs(message.frame_ready_ns)};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <expected>
 #include <memory>
 #include <mutex>
@@ -9,6 +10,7 @@
 #include "hal/depth_sensor.h"
 #include "hal/openni/clock_fit.h"
 #include "hal/openni/play_clock.h"
+#include "hal/openni/restart_pause.h"
 #include "hal/openni/worker_process.h"
 #include "rt/clock.h"
 
@@ -23,7 +25,9 @@ struct SensorSettings {
   bool colour = true;
   rt::Nanoseconds latency{0};   ///< of a sensor: from exposure to the most punctual arrival
   Play play = Play::kRealTime;  ///< of a recording
-  bool repeat = true;           ///< a recording begins anew at its end
+  bool repeat = true;           ///< a recording begins again at its end
+  /// A worker that says nothing for so long before its first picture is ended.
+  rt::Nanoseconds opening_patience = std::chrono::seconds(10);
 };
 
 /// A sensor, or a recording of one, through OpenNI2.
@@ -51,10 +55,10 @@ class OpenniSensor final : public DepthSensor {
   void onHello(const WireMessage& message, rt::UniqueFd memory);
   void onFrame(const WireMessage& message);
   void onEnd();
-  void lose(const std::string& why);
-  [[nodiscard]] rt::Timestamp exposureOf(const WireMessage& message);
+  void lose(const std::string& why, RestartPause::End end = RestartPause::End::kFailure);
+  void setExposures(const WireMessage& message);
   [[nodiscard]] rt::Timestamp silentUntil() const;
-  [[nodiscard]] DepthFrame frameOf(const WireMessage& message, rt::Timestamp exposure);
+  [[nodiscard]] DepthFrame frameOf(const WireMessage& message);
 
   template <class Change>
   void note(const Change& change) {
@@ -66,11 +70,13 @@ class OpenniSensor final : public DepthSensor {
   std::optional<WorkerProcess> worker_;
   rt::Timestamp heard_;     // of the worker
   rt::Timestamp start_at_;  // of the next one
+  RestartPause pause_;
   std::optional<ClockFit> clock_;
   PlayClock play_clock_;
   std::uint64_t last_number_ = 0;
   std::optional<WireMessage> due_;  // received, and not shown yet
   rt::Timestamp due_exposure_;
+  rt::Timestamp due_colour_exposure_;
   std::optional<std::uint32_t> lent_;  // the slot the caller looks at
   bool streamed_ = false;              // this worker, once
   bool was_lost_ = false;

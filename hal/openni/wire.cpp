@@ -57,7 +57,7 @@ ReceiveResult tryReceive(int socket, Received& received) {
     return errno == EAGAIN || errno == EWOULDBLOCK ? ReceiveResult::kNothing
                                                    : ReceiveResult::kClosed;
   }
-  if (bytes != static_cast<ssize_t>(sizeof received.message)) return ReceiveResult::kClosed;
+  if (bytes == 0) return ReceiveResult::kClosed;
   received.descriptor = rt::UniqueFd();
   const cmsghdr* first = CMSG_FIRSTHDR(&header);
   if (first != nullptr && first->cmsg_type == SCM_RIGHTS &&
@@ -66,7 +66,10 @@ ReceiveResult tryReceive(int socket, Received& received) {
     std::memcpy(&descriptor, CMSG_DATA(first), sizeof descriptor);
     received.descriptor = rt::UniqueFd(descriptor);
   }
-  return ReceiveResult::kMessage;
+  const bool whole =
+      bytes == static_cast<ssize_t>(sizeof received.message) && (header.msg_flags & MSG_TRUNC) == 0;
+  return whole && received.message.version == WireMessage::kVersion ? ReceiveResult::kMessage
+                                                                    : ReceiveResult::kForeign;
 }
 
 }  // namespace hal::openni

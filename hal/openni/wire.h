@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -20,9 +21,15 @@ struct WireMessage {
     kEnd,      ///< worker: the recording is over
     kFail,     ///< worker: text says why it gives up
     kRelease,  ///< supervisor: the slot is free again
+    kAlive,    ///< worker: it waits for a sensor, and has not stopped
   };
   static constexpr std::size_t kTextBytes = 400;
 
+  /// Grows with every change of this struct: after an upgrade an old supervisor may start a new
+  /// worker.
+  static constexpr std::uint32_t kVersion = 2;
+
+  std::uint32_t version = kVersion;
   Kind kind{};
   std::uint32_t slot = 0;
   // kHello
@@ -31,11 +38,16 @@ struct WireMessage {
   bool colour = false;
   bool recording = false;
   DepthLens lens;
+  DepthLens colour_lens;
   // kFrame
   bool with_colour = false;
   std::uint64_t number = 0;
   std::uint64_t stamp_us = 0;
+  std::uint64_t colour_stamp_us = 0;
   std::int64_t frame_ready_ns = 0;
+
+  // kFail
+  bool unplugged = false;  ///< only the sensor went
 
   std::array<char, kTextBytes> text{};  ///< kHello: the sensor's name
 
@@ -57,7 +69,12 @@ struct Received {
   WireMessage message;
   rt::UniqueFd descriptor;
 };
-enum class ReceiveResult : std::uint8_t { kMessage, kNothing, kClosed };
+enum class ReceiveResult : std::uint8_t {
+  kMessage,
+  kNothing,
+  kClosed,
+  kForeign,  ///< the other end is of another version
+};
 /// Takes what is there without waiting.
 [[nodiscard]] ReceiveResult tryReceive(int socket, Received& received);
 

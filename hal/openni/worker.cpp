@@ -5,11 +5,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstring>
+#include <fstream>
 #include <thread>
 #include <utility>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "hal/openni/wire.h"
@@ -22,6 +25,16 @@ using Kind = WireMessage::Kind;
 
 constexpr rt::Nanoseconds kLook = 50ms;  // for a device that is not there
 constexpr rt::Nanoseconds kTurn = 100ms;
+constexpr rt::Nanoseconds kSignOfLife = 1s;
+
+/// A vendor's code shall not run with the daemon's privileges: it is the first to go when memory
+/// is short, never real-time, and its crashes leave no core files.
+void dropPrivileges() {
+  constexpr rlimit kNone{.rlim_cur = 0, .rlim_max = 0};
+  (void)::setrlimit(RLIMIT_CORE, &kNone);
+  (void)::setrlimit(RLIMIT_RTPRIO, &kNone);
+  std::ofstream("/proc/self/oom_score_adj") << 500;
+}
 
 /// The supervisor's end is the only reason to stop that a blocking driver could not hide from us.
 void endWithSupervisor(int socket) {
@@ -39,10 +52,12 @@ class Slots {
   Slots(std::uint32_t width_px, std::uint32_t height_px)
       : slot_bytes_(wireSlotBytes(width_px, height_px)),
         bytes_(kWireSlots * slot_bytes_),
-        descriptor_(::memfd_create("kagami-depth", MFD_CLOEXEC)) {
+        descriptor_(::memfd_create("kagami-depth", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
     if (!descriptor_.valid() || ::ftruncate(descriptor_.get(), static_cast<off_t>(bytes_)) != 0) {
       return;
     }
+    // The supervisor maps it: it must not lose pages under a reader.
+    if (::fcntl(descriptor_.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0) return;
     void* at = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_.get(), 0);
     if (at != MAP_FAILED) memory_ = static_cast<std::byte*>(at);
   }
@@ -85,6 +100,7 @@ bool listen(int socket, Slots& slots, rt::Nanoseconds timeout) {
   for (Received received;;) {
     switch (tryReceive(socket, received)) {
       case ReceiveResult::kClosed:
+      case ReceiveResult::kForeign:
         return false;
       case ReceiveResult::kNothing:
         return true;
@@ -94,16 +110,18 @@ bool listen(int socket, Slots& slots, rt::Nanoseconds timeout) {
   }
 }
 
-int fail(int socket, const std::string& why) {
-  WireMessage message{.kind = Kind::kFail};
+int fail(int socket, const std::string& why, bool unplugged = false) {
+  WireMessage message{.kind = Kind::kFail, .unplugged = unplugged};
   message.setText(why);
   (void)send(socket, message);
   return 1;
 }
 
-/// Waits for a device as long as there is a supervisor.
+/// Waits for a device as long as there is a supervisor. Signs of life tell the supervisor that
+/// the driver still looks for it.
 bool waitForDevice(int socket, const std::string& source) {
   bool told = false;
+  rt::Timestamp alive_at = rt::now() + kSignOfLife;
   while (!Device::present(source)) {
     if (!told) {
       WireMessage note{.kind = Kind::kNote};
@@ -114,6 +132,10 @@ bool waitForDevice(int socket, const std::string& source) {
                              "depth_sensor.source and depth_sensor.drivers");
       if (!send(socket, note)) return false;
       told = true;
+    }
+    if (rt::now() >= alive_at) {
+      if (!send(socket, {.kind = Kind::kAlive})) return false;
+      alive_at = rt::now() + kSignOfLife;
     }
     std::this_thread::sleep_for(kLook);
   }
@@ -126,7 +148,8 @@ WireMessage hello(const Device::Facts& facts) {
                       .height_px = facts.height_px,
                       .colour = facts.colour,
                       .recording = facts.recording,
-                      .lens = facts.lens};
+                      .lens = facts.lens,
+                      .colour_lens = facts.colour_lens};
   message.setText(facts.name);
   return message;
 }
@@ -146,7 +169,8 @@ int stream(int socket, Device& device, Slots& slots) {
         continue;
       case Device::Answer::kGone:
         return fail(socket,
-                    "depth sensor " + device.facts().name + " was unplugged: plug it in again");
+                    "depth sensor " + device.facts().name + " was unplugged: plug it in again",
+                    true);
       case Device::Answer::kEnd:
         // Not the end of this process yet: the last pictures are still on loan.
         if (!send(socket, {.kind = Kind::kEnd})) return 0;
@@ -168,6 +192,7 @@ int stream(int socket, Device& device, Slots& slots) {
                            .with_colour = !pair.colour_rgb.empty(),
                            .number = pair.number,
                            .stamp_us = pair.stamp_us,
+                           .colour_stamp_us = pair.colour_stamp_us,
                            .frame_ready_ns = rt::toNs(pair.frame_ready)};
     if (!send(socket, full)) return 0;
   }
@@ -176,6 +201,7 @@ int stream(int socket, Device& device, Slots& slots) {
 }  // namespace
 
 int runWorker(int socket, const DeviceRequest& request, DriverStage stage) {
+  dropPrivileges();
   endWithSupervisor(socket);
   if (auto started = Device::startLibrary(); !started) return fail(socket, started.error());
   if (!waitForDevice(socket, request.source)) return 0;

@@ -128,6 +128,8 @@ bool WorkerProcess::accept(const WireMessage& hello, rt::UniqueFd memory) {
   struct stat facts{};
   if (::fstat(memory.get(), &facts) != 0 || static_cast<std::size_t>(facts.st_size) < bytes)
     return false;
+  // A worker that could shrink it later would end this process by SIGBUS.
+  if ((::fcntl(memory.get(), F_GET_SEALS) & F_SEAL_SHRINK) == 0) return false;
   void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, memory.get(), 0);
   if (at == MAP_FAILED) return false;
   memory_ = static_cast<std::byte*>(at);

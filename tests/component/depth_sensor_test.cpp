@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -121,6 +122,39 @@ TEST(OpenniSensor, IsLookedForWhileItIsNotThere) {
   feed->plug(true);
   EXPECT_TRUE(sensor->waitFrame(20s)) << sensor->status().message;
   EXPECT_EQ(sensor->status().returns, 0u) << "it was never lost";
+}
+
+TEST(OpenniSensor, LetsADriverLookForASensorAsLongAsItTakes) {
+  DepthFeed feed;
+  feed.plug(false);
+  SensorSettings settings = live();
+  settings.opening_patience = 3s;
+  const auto sensor = opened(settings);
+  ASSERT_TRUE(sensor);
+  EXPECT_THAT(messageAbout(*sensor, "plug it in"), HasSubstr("no depth sensor found"));
+  const auto first = workers();
+  ASSERT_EQ(first.size(), 1u);
+  for (const rt::Timestamp end = rt::now() + 5s; rt::now() < end;)
+    EXPECT_FALSE(sensor->waitFrame(100ms));
+  EXPECT_EQ(workers(), first) << "the same process";
+  EXPECT_THAT(sensor->status().message, HasSubstr("no depth sensor found"));
+}
+
+TEST(OpenniSensor, GivesTheDriverFewPrivileges) {
+  const DepthFeed feed;
+  const auto sensor = opened(live());
+  ASSERT_TRUE(sensor);
+  ASSERT_TRUE(sensor->waitFrame(20s)) << sensor->status().message;
+  const auto running = workers();
+  ASSERT_EQ(running.size(), 1u);
+  const std::filesystem::path proc = "/proc/" + std::to_string(running.front());
+  int oom_score_adj = 0;
+  std::ifstream(proc / "oom_score_adj") >> oom_score_adj;
+  EXPECT_EQ(oom_score_adj, 500);
+  std::stringstream limits;
+  limits << std::ifstream(proc / "limits").rdbuf();
+  EXPECT_THAT(limits.str(), testing::ContainsRegex("Max core file size +0 +0"));
+  EXPECT_THAT(limits.str(), testing::ContainsRegex("Max realtime priority +0 +0"));
 }
 
 TEST(OpenniSensor, SurvivesADriverThatCrashes) {

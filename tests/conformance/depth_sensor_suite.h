@@ -63,6 +63,7 @@ TEST_P(DepthSensorConformance, MeasuresMillimetresThroughItsLens) {
   // The field of view of this family of sensors is 50 to 80 degrees.
   EXPECT_GT(frame->lens.focal_x_px, 0.5 * frame->width_px);
   EXPECT_LT(frame->lens.focal_x_px, 1.2 * frame->width_px);
+  EXPECT_GT(frame->colour_lens.focal_x_px, 0.5 * frame->width_px);
   EXPECT_NEAR(frame->lens.centre_x_px, 0.5 * frame->width_px, 0.1 * frame->width_px);
   EXPECT_NEAR(frame->lens.centre_y_px, 0.5 * frame->height_px, 0.1 * frame->height_px);
 }
@@ -85,6 +86,9 @@ TEST_P(DepthSensorConformance, NumbersAndExposuresRise) {
     }
     EXPECT_GT(before->exposure, exposure);
     EXPECT_LE(before->exposure, before->frame_ready);
+    EXPECT_LE(before->colour_exposure, before->frame_ready);
+    EXPECT_LT(std::chrono::abs(before->colour_exposure - before->exposure), 17ms)
+        << "half a period";
     EXPECT_LE(before->frame_ready, rt::now());  // nothing from the future
   }
 }

@@ -1,5 +1,6 @@
 // Recordings as folders of pictures: what is written is read, and what is wrong is named.
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +29,7 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kWidth = 32;
 constexpr std::uint32_t kHeight = 24;
+constexpr std::array<double, 5> kDistortion = {0.1, -0.05, 0.001, -0.002, 0.03};
 
 class Folder : public testing::Test {
  public:
@@ -43,7 +45,7 @@ class Folder : public testing::Test {
                                                   : std::span<const std::uint8_t>(),
                         .width_px = kWidth,
                         .height_px = kHeight,
-                        .lens = {28.5, 28.25, 15.5, 11.5},
+                        .lens = {28.5, 28.25, 15.5, 11.5, kDistortion},
                         .number = number,
                         .exposure = rt::fromNs(static_cast<std::int64_t>(number) * 33'333'000)},
                        "a \"sensor\"");
@@ -81,6 +83,7 @@ TEST_F(Folder, IsReadAsItWasWritten) {
   EXPECT_EQ(recording->width_px(), kWidth);
   EXPECT_DOUBLE_EQ(recording->lens().focal_y_px, 28.25);
   EXPECT_DOUBLE_EQ(recording->lens().centre_x_px, 15.5);
+  EXPECT_EQ(recording->lens().distortion, kDistortion);
   ASSERT_EQ(recording->entries().size(), 4u);
   for (const auto& entry : recording->entries()) {
     EXPECT_EQ(entry.stamp_us, 33'333 * (entry.number - 11));

@@ -72,7 +72,7 @@ TEST(LampFinder, FindsTheSpotThatChangesMost) {
     finder.add({.colour_rgb = rgb,
                 .width_px = kWidth,
                 .height_px = kHeight,
-                .exposure = kStart + i * 33ms});
+                .colour_exposure = kStart + i * 33ms});
   }
   const auto samples = finder.samples();
   ASSERT_EQ(samples.size(), 10u);
