@@ -143,7 +143,7 @@ void Appliance::openDepthSensor() {
     degraded_.push_back(sensor.error() + "; the box runs without its depth sensor");
     return;
   }
-  depth_loop_ = std::make_unique<DepthLoop>(std::move(*sensor));
+  depth_loop_ = std::make_unique<DepthLoop>(std::move(*sensor), depth_board_);
 }
 
 std::expected<void, std::string> Appliance::openTrace() {

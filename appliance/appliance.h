@@ -87,6 +87,7 @@ class Appliance final : public ControlSink, public StatusSource {
   std::string renderer_;
   std::string source_path_;  // how frames reach the renderer
   TargetTrack target_;
+  DepthBoard depth_board_;
   CaptureBoard board_;
   std::unique_ptr<FrameHistory> history_;
   std::unique_ptr<hal::TriggerLine> trigger_line_;

@@ -15,6 +15,17 @@ constexpr rt::Nanoseconds kRateOver = 2s;
 
 constexpr std::array<std::string_view, 4> kStates = {"connecting", "streaming", "lost", "ended"};
 
+std::string readerText(const DepthReaderStatus& reader) {
+  if (reader.taken + reader.refused == 0) return {};
+  std::string text = "; reader " + reader.name + " took " + std::to_string(reader.taken) +
+                     " and lost " + std::to_string(reader.lost);
+  if (reader.refused > 0) {
+    text += ", refused " + std::to_string(reader.refused) + " times because it kept " +
+            std::to_string(reader.pins) + " pictures";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string depthText(const DepthReport& report) {
@@ -32,6 +43,11 @@ std::string depthText(const DepthReport& report) {
   if (sensor.without_colour > 0)
     text += ", " + std::to_string(sensor.without_colour) + " without their colour";
   if (sensor.returns > 0) text += "; came back " + std::to_string(sensor.returns) + " times";
+  if (report.age && sensor.state != hal::DepthState::kStreaming) {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(*report.age);
+    text += "; the last picture was taken " + std::to_string(seconds.count()) + " s ago";
+  }
+  for (const DepthReaderStatus& reader : report.readers) text += readerText(reader);
   return text;
 }
 
@@ -47,7 +63,11 @@ void DepthLoop::run(const std::stop_token& stop) {
   rt::Timestamp since = rt::now();
   std::uint64_t pictures = 0;
   while (!stop.stop_requested()) {
-    if (sensor_->waitFrame(kPatience)) ++pictures;
+    if (const auto frame = sensor_->waitFrame(kPatience)) {
+      board_.publish(*frame);  // the one copy: the sensor lends its picture until the next call
+      newest_exposure_ns_.store(rt::toNs(frame->exposure), std::memory_order_relaxed);
+      ++pictures;
+    }
     const rt::Nanoseconds over = rt::now() - since;
     if (over < kRateOver) continue;
     rate_hz_.store(static_cast<double>(pictures) / std::chrono::duration<double>(over).count(),
@@ -58,7 +78,12 @@ void DepthLoop::run(const std::stop_token& stop) {
 }
 
 DepthReport DepthLoop::report() const {
-  return {sensor_->status(), rate_hz_.load(std::memory_order_relaxed)};
+  DepthReport report{.sensor = sensor_->status(),
+                     .rate_hz = rate_hz_.load(std::memory_order_relaxed),
+                     .readers = board_.readers()};
+  const rt::Timestamp newest = rt::fromNs(newest_exposure_ns_.load(std::memory_order_relaxed));
+  if (newest != rt::Timestamp{}) report.age = rt::now() - newest;
+  return report;
 }
 
 }  // namespace appliance

@@ -2,39 +2,49 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include "appliance/depth/depth_board.h"
 #include "hal/depth_sensor.h"
 #include "rt/clock.h"
 
 namespace appliance {
 
-/// The depth sensor as people want it told.
+/// The depth sensor and those who read its pictures, for people.
 struct DepthReport {
   hal::DepthStatus sensor;
-  double rate_hz = 0;  ///< of the pictures of the last seconds
+  double rate_hz = 0;                  ///< of the pictures of the last seconds
+  std::optional<rt::Nanoseconds> age;  ///< since the newest picture's exposure; none: no picture
+  std::vector<DepthReaderStatus> readers;
 };
 
-/// "streaming: NAME, 640x480 with colour, 30.0 Hz; 900 pictures, 0 lost", in one line.
+/// "streaming: NAME, 640x480 with colour, 30.0 Hz; 900 pictures, 0 lost", in one line, and each
+/// reader that took a picture.
 [[nodiscard]] std::string depthText(const DepthReport& report);
 
 /// What is less than asked for, for a person; empty: nothing.
 [[nodiscard]] std::string depthTrouble(const DepthReport& report);
 
-/// Takes the sensor's pictures as they come.
+/// Puts the sensor's pictures on the board as they come.
 ///
 /// Threads  run(): the `depth` thread. report(): any.
-/// Errors   A sensor that goes is told by report(); it comes back by itself.
+/// Errors   report() says that a sensor went; it comes back by itself.
 class DepthLoop {
  public:
-  explicit DepthLoop(std::unique_ptr<hal::DepthSensor> sensor) : sensor_(std::move(sensor)) {}
+  /// @p board outlives the loop.
+  DepthLoop(std::unique_ptr<hal::DepthSensor> sensor, DepthBoard& board)
+      : sensor_(std::move(sensor)), board_(board) {}
 
   void run(const std::stop_token& stop);
   [[nodiscard]] DepthReport report() const;
 
  private:
   const std::unique_ptr<hal::DepthSensor> sensor_;
+  DepthBoard& board_;
+  std::atomic<std::int64_t> newest_exposure_ns_{0};
   std::atomic<double> rate_hz_{0};
 };
 

@@ -34,6 +34,24 @@ TEST(DepthText, HasNoNumbersOfASensorThatWasNeverThere) {
   EXPECT_EQ(depthTrouble(report), "no depth sensor found: plug it in");
 }
 
+TEST(DepthText, NamesEachReaderThatTookAPicture) {
+  DepthReport report{.sensor = {.state = hal::DepthState::kStreaming, .name = "Acme", .frames = 9},
+                     .readers = {{.name = "snapshot", .pins = 1, .taken = 3, .lost = 1},
+                                 {.name = "idle", .pins = 2}}};
+  EXPECT_THAT(depthText(report), HasSubstr("; reader snapshot took 3 and lost 1"));
+  EXPECT_THAT(depthText(report), testing::Not(HasSubstr("idle")));
+  report.readers[0].refused = 2;
+  EXPECT_THAT(depthText(report), HasSubstr("refused 2 times because it kept 1 pictures"));
+}
+
+TEST(DepthText, SaysHowOldTheLastPictureOfALostSensorIs) {
+  DepthReport report{.sensor = {.state = hal::DepthState::kLost, .name = "Acme", .frames = 9},
+                     .age = std::chrono::milliseconds(12'300)};
+  EXPECT_THAT(depthText(report), HasSubstr("; the last picture was taken 12 s ago"));
+  report.sensor.state = hal::DepthState::kStreaming;
+  EXPECT_THAT(depthText(report), testing::Not(HasSubstr("ago")));
+}
+
 TEST(DepthText, SaysThatARecordingIsOver) {
   DepthReport report{.sensor = {.state = hal::DepthState::kEnded, .name = "a.oni", .frames = 60}};
   EXPECT_THAT(depthText(report), HasSubstr("ended: a.oni"));
