@@ -72,7 +72,7 @@ std::expected<void, std::string> Appliance::makeHistory(const hal::Display& disp
   HistoryLayout layout{.frame_bytes = {},
                        .sets = config_.history.sets,
                        .in_flight = config_.history.in_flight,
-                       .reserve = config_.history.reserve};
+                       .reserve = RenderLoop::kPinsPerCamera};
   for (const RigCamera& camera : rig_.cameras) {
     layout.frame_bytes.push_back(std::size_t{camera.width_px} * camera.height_px);
   }
@@ -95,6 +95,9 @@ std::expected<void, std::string> Appliance::makeHistory(const hal::Display& disp
       *fitted, upload_reason.empty() ? HistorySharing::kShared : HistorySharing::kPrivate);
   if (!history) return std::unexpected(history.error());
   history_ = std::move(*history);
+  auto reader = history_->openReader("render", RenderLoop::kPinsPerCamera);
+  if (!reader) return std::unexpected(reader.error());
+  shown_frames_ = std::make_unique<HistoryViews>(**reader, board_.edges);
   if (upload_reason.empty()) upload_reason = history_->notShared();
   source_path_ = upload_reason.empty() ? "dma-buf" : "upload: " + upload_reason;
   // The rest of the process after the arena: mlockall first would fault it in page by page.
@@ -173,7 +176,7 @@ void Appliance::makeLoops(hal::Display& display, PictureObserver* observer) {
   }
   render_loop_ = std::make_unique<RenderLoop>(
       RenderParts{.rig = rig_,
-                  .history = *history_,
+                  .frames = *shown_frames_,
                   .board = board_,
                   .target = target_,
                   .display = display,
@@ -333,6 +336,7 @@ Status Appliance::status() const {
       status.degraded.push_back(std::move(trouble));
   }
   for (std::string& remark : cameras_->remarks()) status.degraded.push_back(std::move(remark));
+  for (std::string& remark : history_->remarks()) status.degraded.push_back(std::move(remark));
   status.genlock_text = genlockText(status.genlock, config_.trigger.rate_hz);
   if (config_.display.flicker_compensation) status.light_text = flickerText(render.flicker);
   status.cameras = cameras_->statuses();

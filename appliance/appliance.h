@@ -20,6 +20,7 @@
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
 #include "appliance/panel/panel_loop.h"
+#include "appliance/render/history_views.h"
 #include "appliance/render/render_loop.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/button_panel.h"
@@ -90,6 +91,7 @@ class Appliance final : public ControlSink, public StatusSource {
   DepthBoard depth_board_;
   CaptureBoard board_;
   std::unique_ptr<FrameHistory> history_;
+  std::unique_ptr<HistoryViews> shown_frames_;  // through the render loop's reader
   std::unique_ptr<hal::TriggerLine> trigger_line_;
   std::unique_ptr<hal::EdgeInput> loopback_;  // none: no loop-back, or wired wrongly
   std::unique_ptr<hal::ButtonPanel> panel_;

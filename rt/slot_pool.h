@@ -15,17 +15,18 @@ namespace rt {
 
 /// Who may touch one slot of big data, in one atomic word: {tag, published, pins}.
 ///
-///     free --publish(tag)--> published --retire()--> free          (nobody held it)
-///                                      \-> retired, pinned --unpin()--> free
+///     free, filling --publish(tag)--> stored --retire()--> free            (no pin left)
+///                                            \-> parked --unpin()--> free  (the last pin goes)
 ///
-/// A pin succeeds only while the slot is published under the tag the reader asked
-/// for. A slot is free only when it is neither published nor pinned, so by
-/// construction the writer never gets a slot back that a reader looks at.
+/// A pin succeeds only while the slot is stored under the tag that the reader names.
+/// The writer gets a slot back only if the slot is neither stored nor pinned.
 ///
-/// Threads  publish(), retire(), isFree(): the writer. tryPin(), unpin(): any.
+/// Threads  publish(), retire(), isFree(): the writer. The others: any.
 /// RT       Lock-free; the writer's members are wait-free.
 /// Memory   publish() releases the slot's content to a successful tryPin(). unpin()
 ///          releases the reader's last look to the writer that finds the slot free.
+///          tryPin() releases, too: a writer that meets the new pin sees that the pins
+///          which the reader dropped before are gone.
 class SlotState {
  public:
   static constexpr std::uint64_t kMaxTag = (std::uint64_t{1} << 48) - 1;
@@ -41,12 +42,19 @@ class SlotState {
   [[nodiscard]] bool tryPin(std::uint64_t tag) RT_SAFE {
     auto word = word_.load(std::memory_order_relaxed);
     while ((word & ~kMaxPins) == published(tag) && (word & kMaxPins) != kMaxPins) {
-      if (word_.compare_exchange_weak(word, word + 1, std::memory_order_acquire,
+      if (word_.compare_exchange_weak(word, word + 1, std::memory_order_acq_rel,
                                       std::memory_order_relaxed)) {
         return true;
       }
     }
     return false;
+  }
+
+  /// One more pin on what is pinned already, whether it is still stored or not.
+  /// @pre the caller holds a pin
+  void pinAgain() RT_SAFE {
+    [[maybe_unused]] const auto before = word_.fetch_add(1, std::memory_order_relaxed);
+    assert((before & kMaxPins) != 0 && (before & kMaxPins) != kMaxPins);
   }
 
   /// @pre the caller holds a pin
@@ -75,11 +83,12 @@ class SlotState {
   std::atomic<std::uint64_t> word_{0};
 };
 
-/// Holds a slot's content in place while it lives.
+/// Holds a slot's content in place while it lives. One made without a slot holds nothing.
 /// Threads  One at a time; it may move to another thread.
-/// RT       Wait-free to move and to destroy.
+/// RT       Wait-free to move, to repeat and to destroy.
 class SlotPin {
  public:
+  SlotPin() noexcept = default;
   SlotPin(SlotState& state, std::uint32_t slot) noexcept : state_(&state), slot_(slot) {}
   SlotPin(SlotPin&& other) noexcept
       : state_(std::exchange(other.state_, nullptr)), slot_(other.slot_) {}
@@ -93,19 +102,26 @@ class SlotPin {
     if (state_ != nullptr) state_->unpin();
   }
 
+  /// A second pin on the same content.
+  [[nodiscard]] SlotPin again() const RT_SAFE {
+    if (state_ == nullptr) return {};
+    state_->pinAgain();
+    return {*state_, slot_};
+  }
+
   [[nodiscard]] std::uint32_t slot() const noexcept { return slot_; }
 
  private:
-  SlotState* state_;  // null once moved from
-  std::uint32_t slot_;
+  SlotState* state_ = nullptr;  // none: holds nothing, or was moved from
+  std::uint32_t slot_ = 0;
 };
 
 /// The slots of one writer and the bookkeeping of which are free.
 ///
 /// A retired slot that a reader still holds is parked and collected by a later
 /// tryAcquire(): the writer never waits. With as many slots as are filling and
-/// published at once, plus one per pin that readers may hold at once, tryAcquire()
-/// cannot fail.
+/// stored at once, plus one per pin that readers may hold at once, tryAcquire()
+/// cannot fail: see PinBudget.
 ///
 /// Threads  tryPin(): any. All else: the writer.
 /// RT       The constructor allocates; every other member is RT safe. tryAcquire()
@@ -122,7 +138,7 @@ class SlotPool {
 
   [[nodiscard]] std::uint32_t size() const RT_SAFE { return size_; }
   [[nodiscard]] std::size_t freeSlots() const RT_SAFE { return free_.size(); }
-  /// Retired, but pinned when last looked at.
+  /// Retired, but pinned at the last check.
   [[nodiscard]] std::size_t parkedSlots() const RT_SAFE { return parked_.size(); }
 
   /// A slot to fill, the writer's alone until publish().
@@ -134,19 +150,19 @@ class SlotPool {
     return slot;
   }
 
-  /// Shows an acquired and filled slot to the readers under @p tag.
+  /// Stores an acquired and filled slot: readers find it under @p tag.
   void publish(std::uint32_t slot, std::uint64_t tag) RT_SAFE {
     assert(slot < size_);
     states_[slot].publish(tag);
   }
 
-  /// Takes a published slot out of sight; it is acquired again once no pin is left.
+  /// Takes a stored slot out of sight; it is free again as soon as no pin is left.
   void retire(std::uint32_t slot) RT_SAFE {
     assert(slot < size_ && free_.size() + parked_.size() < size_);
     (states_[slot].retire() ? free_ : parked_).push_back(slot);
   }
 
-  /// A hold on @p slot if it is published under @p tag right now.
+  /// A pin on @p slot if it is stored under @p tag right now.
   [[nodiscard]] std::optional<SlotPin> tryPin(std::uint32_t slot, std::uint64_t tag) RT_SAFE {
     assert(slot < size_);
     if (!states_[slot].tryPin(tag)) return std::nullopt;

@@ -93,6 +93,12 @@ std::vector<std::string> CameraArray::remarks() const {
   for (const auto& supervisor : supervisors_) {
     for (std::string& remark : supervisor->remarks()) remarks.push_back(std::move(remark));
   }
+  for (std::size_t i = 0; i < collectors_.size(); ++i) {
+    if (collectors_[i]->counts().no_slot == 0) continue;
+    remarks.push_back(rig_.cameras[i].name +
+                      ": frames were dropped because readers held every free slot: please report "
+                      "this");
+  }
   return remarks;
 }
 

@@ -19,6 +19,7 @@ CollectorCounts& CollectorCounts::operator+=(const CollectorCounts& other) {
   stored += other.stored;
   missing += other.missing;
   away += other.away;
+  no_slot += other.no_slot;
   incomplete += other.incomplete;
   wrong_size += other.wrong_size;
   no_edge += other.no_edge;
@@ -64,20 +65,31 @@ std::uint64_t Collector::triggerOf(const hal::FrameArrival& arrival) RT_SAFE {
   return name.trigger;
 }
 
+/// The slot to fill next; the frame's own if it could not be stored.
+std::uint32_t Collector::store(std::uint64_t trigger, const hal::FrameArrival& arrival) RT_SAFE {
+  const std::uint64_t gap = trigger - frames_.newest() - 1;
+  const std::uint32_t next =
+      frames_.store(arrival.slot, {.trigger = trigger,
+                                   .frame_id = arrival.frame_id,
+                                   .trigger_edge = board_.edges.edge(trigger),
+                                   .first_packet = arrival.first_packet,
+                                   .last_packet = arrival.last_packet});
+  if (next == arrival.slot) {
+    count(no_slot_);
+    return next;
+  }
+  count(restarted_ || gap >= kLostAfterTriggers ? away_ : missing_, gap);
+  restarted_ = false;
+  return next;
+}
+
 std::uint32_t Collector::onFrame(const hal::FrameArrival& arrival) RT_SAFE {
   const rt::ScopedRtSection rt_section;
-  const std::uint64_t trigger = triggerOf(arrival);
+  std::uint64_t trigger = triggerOf(arrival);
 
   std::uint32_t next = arrival.slot;  // a frame that is not stored is filled over
-  if (trigger != 0) {
-    const std::uint64_t gap = trigger - frames_.newest() - 1;
-    count(restarted_ || gap >= kLostAfterTriggers ? away_ : missing_, gap);
-    restarted_ = false;
-    next = frames_.store(arrival.slot, {.trigger = trigger,
-                                        .frame_id = arrival.frame_id,
-                                        .first_packet = arrival.first_packet,
-                                        .last_packet = arrival.last_packet});
-  }
+  if (trigger != 0) next = store(trigger, arrival);
+  if (next == arrival.slot) trigger = 0;
   const rt::Timestamp frame_ready = rt::now();
   if (trigger != 0) {
     count(stored_);
@@ -105,6 +117,7 @@ CollectorCounts Collector::counts() const RT_SAFE {
       .stored = stored_.load(std::memory_order_relaxed),
       .missing = missing_.load(std::memory_order_relaxed),
       .away = away_.load(std::memory_order_relaxed),
+      .no_slot = no_slot_.load(std::memory_order_relaxed),
       .incomplete = incomplete_.load(std::memory_order_relaxed),
       .wrong_size = wrong_size_.load(std::memory_order_relaxed),
       .no_edge = no_edge_.load(std::memory_order_relaxed),

@@ -14,17 +14,18 @@
 
 namespace appliance {
 
-/// What one camera delivered so far. Every frame that came is in exactly one of stored,
+/// What one camera delivered so far. Every frame that came is in exactly one of stored, no_slot,
 /// incomplete, wrong_size, no_edge, repeated and unsettled.
 struct CollectorCounts {
   std::uint64_t stored = 0;
-  std::uint64_t missing = 0;     ///< triggers that brought no frame, fewer than make a camera lost
-  std::uint64_t away = 0;        ///< the same, in a row that makes it lost, or until it was back
-  std::uint64_t incomplete = 0;  ///< packets missing after all resends
-  std::uint64_t wrong_size = 0;  ///< another size or format than the profile says
-  std::uint64_t no_edge = 0;     ///< taken when no trigger asked for it
-  std::uint64_t repeated = 0;    ///< its trigger has a frame, or a later one has
-  std::uint64_t unsettled = 0;   ///< its trigger could not be told for sure; see FrameNamer
+  std::uint64_t missing = 0;       ///< triggers without a frame while the camera counted as present
+  std::uint64_t away = 0;          ///< triggers without a frame while it counted as lost
+  std::uint64_t no_slot = 0;       ///< good, but readers pinned every free slot
+  std::uint64_t incomplete = 0;    ///< packets missing after all resends
+  std::uint64_t wrong_size = 0;    ///< another size or format than the profile says
+  std::uint64_t no_edge = 0;       ///< taken at no trigger's time
+  std::uint64_t repeated = 0;      ///< its trigger has a frame, or a later one has
+  std::uint64_t unsettled = 0;     ///< its trigger is not certain; see FrameNamer
   std::uint64_t unattributed = 0;  ///< the sum of the last three
   rt::Timestamp last_stored;
 
@@ -58,6 +59,8 @@ class Collector final : public hal::FrameSink {
 
  private:
   [[nodiscard]] std::uint64_t triggerOf(const hal::FrameArrival& arrival) RT_SAFE;
+  [[nodiscard]] std::uint32_t store(std::uint64_t trigger,
+                                    const hal::FrameArrival& arrival) RT_SAFE;
 
   const std::uint32_t camera_;
   FrameNamer namer_;        // the receive thread's
@@ -70,6 +73,7 @@ class Collector final : public hal::FrameSink {
   std::atomic<std::uint64_t> stored_{0};
   std::atomic<std::uint64_t> missing_{0};
   std::atomic<std::uint64_t> away_{0};
+  std::atomic<std::uint64_t> no_slot_{0};
   std::atomic<std::uint64_t> incomplete_{0};
   std::atomic<std::uint64_t> wrong_size_{0};
   std::atomic<std::uint64_t> no_edge_{0};

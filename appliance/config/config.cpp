@@ -78,6 +78,14 @@ class Section {
   }
   void fail(std::string_view key, const std::string& message) const { table_.fail(key, message); }
 
+  /// A key of earlier versions: it is accepted, has no effect, and a line says so.
+  void retired(std::string_view key, std::vector<std::string>& warnings, const char* because) {
+    own_keys_.push_back(key);
+    if (!table_.has(key)) return;
+    warnings.push_back(path_ + std::string(key) + " has no effect any more (" + because +
+                       "): remove it from the configuration");
+  }
+
   /// After the last key: every other one is refused.
   void end() const { table_.allowKeys(own_keys_); }
 
@@ -175,10 +183,10 @@ void readTrigger(Section section, Config::Trigger& trigger) {
   section.end();
 }
 
-void readHistory(Section section, Config::History& history) {
-  section.integer("sets", history.sets, {2, 100'000, "frame sets"});
+void readHistory(Section section, Config::History& history, std::vector<std::string>& warnings) {
+  section.integer("sets", history.sets, {2, 60'000, "frame sets"});  // kMostSlots, and the others
   section.integer("in_flight", history.in_flight, {2, 64, "slots"});
-  section.integer("reserve", history.reserve, {1, 64, "slots"});
+  section.retired("reserve", warnings, "each reader of the history has its own slots");
   section.flag("size_down", history.size_down);
   section.end();
 }
@@ -298,7 +306,7 @@ std::vector<std::string> readAll(const TomlTable& root, Config& config) {
   light.number("mains_hz", config.light.mains_hz, {10, 100, "Hz"});
   light.end();
   readTrigger(sections.sub("trigger"), config.trigger);
-  readHistory(sections.sub("history"), config.history);
+  readHistory(sections.sub("history"), config.history, config.warnings);
   readDisplay(sections.sub("display"), config.display);
   readPanel(sections.sub("panel"), config.panel);
   readDepthSensor(sections.sub("depth_sensor"), config.depth_sensor);

@@ -74,7 +74,6 @@ struct Config {
   struct History {
     std::uint32_t sets = 300;
     std::uint32_t in_flight = 8;  ///< slots per camera
-    std::uint32_t reserve = 4;    ///< slots per camera for what readers pin
     bool size_down = true;
     bool operator==(const History&) const = default;
   };
@@ -169,6 +168,7 @@ struct Config {
   Realtime realtime;
   State state;
   Control control;
+  std::vector<std::string> warnings;  ///< what was read and has no effect, one line each
   bool operator==(const Config&) const = default;
 };
 

@@ -5,16 +5,21 @@
 namespace appliance {
 
 StoredRange HistoryViews::range(std::uint32_t camera) const RT_SAFE {
-  const CameraFrames& frames = history_.camera(camera);
+  const CameraFrames& frames = history().camera(camera);
   return {.oldest = frames.oldest(), .newest = frames.newest()};
 }
 
 bool HistoryViews::holds(std::uint32_t camera, std::uint64_t trigger) const RT_SAFE {
-  return history_.camera(camera).holds(trigger);
+  return history().camera(camera).holds(trigger);
 }
 
 bool HistoryViews::living(std::uint32_t camera) const RT_SAFE {
-  return delivers(history_.camera(camera).newest(), edges_.newest());
+  return delivers(history().camera(camera).newest(), edges_.newest());
+}
+
+std::optional<PinnedFrame> HistoryViews::tryPin(std::uint32_t camera,
+                                                std::uint64_t trigger) RT_SAFE {
+  return reader_.tryPin(camera, trigger);
 }
 
 }  // namespace appliance

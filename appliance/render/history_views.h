@@ -1,29 +1,33 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
-#include "appliance/director/stored_views.h"
+#include "appliance/render/stored_frames.h"
 
 namespace appliance {
 
-/// The frame history as the director sees it.
+/// The frame history through the render loop's reader.
 ///
 /// Threads  The render thread.
 /// RT       RT safe.
-class HistoryViews final : public StoredViews {
+class HistoryViews final : public StoredFrames {
  public:
-  HistoryViews(const FrameHistory& history, const EdgeBoard& edges)
-      : history_(history), edges_(edges) {}
+  HistoryViews(FrameReader& reader, const EdgeBoard& edges) : reader_(reader), edges_(edges) {}
 
-  [[nodiscard]] std::uint32_t cameras() const RT_SAFE override { return history_.cameras(); }
+  [[nodiscard]] std::uint32_t cameras() const RT_SAFE override { return history().cameras(); }
   [[nodiscard]] StoredRange range(std::uint32_t camera) const RT_SAFE override;
   [[nodiscard]] bool holds(std::uint32_t camera, std::uint64_t trigger) const RT_SAFE override;
   [[nodiscard]] bool living(std::uint32_t camera) const RT_SAFE override;
+  [[nodiscard]] std::optional<PinnedFrame> tryPin(std::uint32_t camera,
+                                                  std::uint64_t trigger) RT_SAFE override;
 
  private:
-  const FrameHistory& history_;
+  [[nodiscard]] const FrameHistory& history() const RT_SAFE { return reader_.history(); }
+
+  FrameReader& reader_;
   const EdgeBoard& edges_;
 };
 

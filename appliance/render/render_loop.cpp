@@ -30,7 +30,6 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
     : parts_(parts),
       parameters_(parameters),
       view_{.width_px = 0, .height_px = 0, .zoom = parameters.zoom},
-      stored_(parts.history, parts.board.edges),
       target_(parts.target),
       director_(parameters.director),
       views_(parts.rig.cameras.size()),
@@ -53,12 +52,19 @@ void RenderLoop::turn() noexcept {
   const rt::Timestamp wake = rt::now();
   takeCommands();
   Wanted wanted;
-  wanted.shot = director_.tick(wake, parameters_.trigger_period, stored_,
+  wanted.shot = director_.tick(wake, parameters_.trigger_period, parts_.frames,
                                std::span(commands_).first(command_count_));
   command_count_ = 0;
-  wanted.line = statusLine(wanted.shot, parts_.history.cameras());
+  wanted.line = statusLine(wanted.shot, parts_.frames.cameras());
+  std::optional<PinnedFrame> frame;
+  if (wanted.shot.trigger != 0) {
+    frame = parts_.frames.tryPin(wanted.shot.camera_shown, wanted.shot.trigger);
+  }
+  // Overtaken since the decision: the next turn decides again.
+  const bool ready = frame || wanted.shot.trigger == 0;
+  if (frame) wanted.trigger_edge = frame->frame.trigger_edge;
   wanted.target_point_begin = rt::now();
-  wanted.exposure_middle = exposureMiddle(wanted.shot.trigger);
+  wanted.exposure_middle = exposureMiddle(wanted.trigger_edge);
   const Eigen::Vector3d& rig_m = parts_.rig.target_m;
   wanted.target = target_.at(wanted.exposure_middle, {rig_m.x(), rig_m.y(), rig_m.z()});
   wanted.target_point_end = rt::now();
@@ -66,7 +72,7 @@ void RenderLoop::turn() noexcept {
 
   followScreen();
   const bool visible = counters_.screen.state == hal::ScreenState::kShowing;
-  if (visible && !onScreen(wanted) && mayDraw(wanted, wake) && show(wanted, wake)) {
+  if (visible && ready && !onScreen(wanted) && mayDraw(wanted, wake) && show(wanted, frame, wake)) {
     on_screen_ = wanted;
     stale_ = false;
     first_command_ = {};
@@ -112,8 +118,7 @@ bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
          !looksDifferent(on_screen_.target, wanted.target);
 }
 
-rt::Timestamp RenderLoop::exposureMiddle(std::uint64_t trigger) const noexcept {
-  const rt::Timestamp edge = parts_.board.edges.edge(trigger);
+rt::Timestamp RenderLoop::exposureMiddle(rt::Timestamp edge) const noexcept {
   return edge == rt::Timestamp{} ? edge : edge + parameters_.edge_to_exposure_middle;
 }
 
@@ -125,7 +130,7 @@ bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept {
   const Shot& shot = wanted.shot;
   const bool is_new = shot.trigger != on_screen_.shot.trigger;
   if (!locked_ || stale_ || shot.mode != Mode::kLive || (is_new && held_back_) ||
-      locked_->redrawFits(now, parts_.board.edges.edge(shot.trigger))) {
+      locked_->redrawFits(now, wanted.trigger_edge)) {
     held_back_ = false;
     return true;
   }
@@ -143,7 +148,8 @@ void RenderLoop::evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept {
   counters_.flicker = flicker_.report();
 }
 
-bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
+bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& frame,
+                      rt::Timestamp wake) noexcept {
   const Shot& shot = wanted.shot;
   PictureRecord record{.picture_id = picture_id_ + 1,
                        .mode = shot.mode,
@@ -154,12 +160,8 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
                        .wake = wake,
                        .button_event = first_command_};
 
-  std::optional<PinnedFrame> frame;
   hal::Scene scene{.status = wanted.line};
-  if (shot.trigger != 0) {
-    frame = parts_.history.camera(shot.camera_shown).tryPin(shot.trigger);
-    if (!frame) return false;  // overtaken since the decision; the next turn decides anew
-
+  if (frame) {
     record.target_point_begin = wanted.target_point_begin;
     record.target_point_end = wanted.target_point_end;
     record.homographies_begin = rt::now();
@@ -182,7 +184,7 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
   const bool new_live = shot.mode == Mode::kLive && shot.trigger != on_screen_.shot.trigger;
   if (drawn && frame && new_live) {
     noteReady(frame->frame);
-    if (locked_) rt::sleepUntil(locked_->earliestCommit(parts_.board.edges.edge(shot.trigger)));
+    if (locked_) rt::sleepUntil(locked_->earliestCommit(wanted.trigger_edge));
   }
   const auto commit = drawn ? parts_.display.commit(record.picture_id)
                             : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));
@@ -207,10 +209,9 @@ bool RenderLoop::show(const Wanted& wanted, rt::Timestamp wake) noexcept {
 }
 
 void RenderLoop::noteReady(const StoredFrame& frame) noexcept {
-  const rt::Timestamp edge = parts_.board.edges.edge(frame.trigger);
   // The frame is readable microseconds after its last packet.
-  if (edge != rt::Timestamp{} && frame.last_packet > edge)
-    ready_delay_.add(frame.last_packet - edge);
+  if (frame.trigger_edge != rt::Timestamp{} && frame.last_packet > frame.trigger_edge)
+    ready_delay_.add(frame.last_packet - frame.trigger_edge);
 }
 
 void RenderLoop::countShown(rt::Timestamp commit) noexcept {

@@ -8,17 +8,16 @@
 #include <vector>
 
 #include "appliance/capture/capture_board.h"
-#include "appliance/capture/frame_history.h"
 #include "appliance/director/director.h"
 #include "appliance/geometry/homography.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
 #include "appliance/light/flicker.h"
 #include "appliance/render/command_queue.h"
-#include "appliance/render/history_views.h"
 #include "appliance/render/locked_vblanks.h"
 #include "appliance/render/picture_observer.h"
 #include "appliance/render/render_allowance.h"
+#include "appliance/render/stored_frames.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
 #include "rt/high_quantile.h"
@@ -41,7 +40,7 @@ struct RenderStatus {
 /// Everything the render loop works with; all outlives it.
 struct RenderParts {
   const Rig& rig;
-  FrameHistory& history;
+  StoredFrames& frames;  ///< by a reader that may pin RenderLoop::kPinsPerCamera
   CaptureBoard& board;
   const TargetTrack& target;
   hal::Display& display;
@@ -63,11 +62,14 @@ struct RenderParameters {
 ///
 /// Threads  run(): the `render` thread. status(): one reader. mode(): any thread.
 /// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
-///          monitored, not RT safe. It pins at most one frame at a time. It stands above receiving
-///          and keeps to an allowance, so that capture has 40 % of every CPU.
+///          monitored, not RT safe. It stands above receiving and keeps to an allowance, so that
+///          capture has 40 % of every CPU.
 ///          While triggers are locked, a picture that would come a vblank early waits.
 class RenderLoop {
  public:
+  /// The shown frame, and a second one of the same camera.
+  static constexpr std::uint32_t kPinsPerCamera = 2;
+
   RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
 
   void run(const std::stop_token& stop) noexcept;
@@ -89,6 +91,7 @@ class RenderLoop {
  private:
   struct Wanted {
     Shot shot;
+    rt::Timestamp trigger_edge;  // of the shown frame
     hal::StatusLine line;
     rt::Timestamp exposure_middle;
     Target target;
@@ -99,9 +102,10 @@ class RenderLoop {
   void turn() noexcept;
   void takeCommands() noexcept;
   void followScreen() noexcept;
-  [[nodiscard]] rt::Timestamp exposureMiddle(std::uint64_t trigger) const noexcept;
+  [[nodiscard]] rt::Timestamp exposureMiddle(rt::Timestamp edge) const noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
-  [[nodiscard]] bool show(const Wanted& wanted, rt::Timestamp wake) noexcept;
+  [[nodiscard]] bool show(const Wanted& wanted, const std::optional<PinnedFrame>& frame,
+                          rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
   void noteReady(const StoredFrame& frame) noexcept;
   void evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept;
@@ -112,7 +116,6 @@ class RenderLoop {
   const RenderParts parts_;
   const RenderParameters parameters_;
   ViewParameters view_;  // of the screen's present mode
-  HistoryViews stored_;
   TargetReader target_;
   Director director_;
   CommandQueue panel_commands_;

@@ -19,7 +19,8 @@ std::expected<Site, std::string> loadSite(const std::string& config_file,
   if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
   auto fitted = fitToNetwork(std::move(*config), *rig);
   if (!fitted) return std::unexpected(fitted.error());
-  Site site{std::move(fitted->config), std::move(*rig), {}};
+  std::vector<std::string> warnings = fitted->config.warnings;
+  Site site{std::move(fitted->config), std::move(*rig), std::move(warnings)};
   if (!fitted->lowered.empty()) site.degraded.push_back(std::move(fitted->lowered));
   return site;
 }

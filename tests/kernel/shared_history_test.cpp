@@ -20,6 +20,7 @@
 
 #include "appliance/capture/frame_history.h"
 #include "appliance/geometry/rig.h"
+#include "appliance/render/history_views.h"
 #include "appliance/render/render_loop.h"
 #include "rt/clock.h"
 #include "rt/unique_fd.h"
@@ -67,9 +68,10 @@ TEST(SharedHistory, ARingOf300FramesIsAFewDmaBufsWithEveryFrameInItsPlace) {
     frames.slots()[slot].front() = static_cast<std::byte>(trigger);
     queue.push_back(frames.store(slot, {.trigger = trigger}));
   }
+  FrameReader& reader = **history->openReader("test", 1);
   std::set<std::uint64_t> buffers;
   for (std::uint64_t trigger = 21; trigger <= 320; ++trigger) {
-    const auto frame = frames.tryPin(trigger);
+    const auto frame = reader.tryPin(0, trigger);
     ASSERT_TRUE(frame) << trigger;
     EXPECT_EQ(firstByte(frame->dma_buf), static_cast<int>(trigger & 0xFF)) << trigger;
     buffers.insert(frame->dma_buf.buffer);
@@ -103,7 +105,7 @@ TEST(SharedHistory, OutOfFileDescriptorsItServesUnsharedAndSaysWhatToRaise) {
       << history->notShared();
   CameraFrames& frames = history->camera(0);
   (void)frames.store(frames.fillingSlots()[0], {.trigger = 1});
-  const auto frame = frames.tryPin(1);
+  const auto frame = (*history->openReader("test", 1))->tryPin(0, 1);
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->dma_buf.valid());
 }
@@ -163,11 +165,12 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
   ASSERT_NE(history, nullptr);
   ASSERT_EQ(history->notShared(), "");
   CaptureBoard board(1);
+  HistoryViews shown(**history->openReader("render", RenderLoop::kPinsPerCamera), board.edges);
   const TargetTrack target;
   NotingDisplay display;
   ImportCounter observer;
   RenderLoop loop({.rig = rig,
-                   .history = *history,
+                   .frames = shown,
                    .board = board,
                    .target = target,
                    .display = display,

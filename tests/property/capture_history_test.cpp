@@ -25,6 +25,13 @@ std::unique_ptr<FrameHistory> makeHistory() {
   return std::move(*history);
 }
 
+/// A reader that may use the whole reserve.
+FrameReader& openReader(FrameHistory& history) {
+  const auto reader = history.openReader("test", kReserve);
+  EXPECT_TRUE(reader) << reader.error();
+  return **reader;
+}
+
 /// Delivers triggers as a camera does: fills the slot it was given, stores it, takes the next.
 class Filler {
  public:
@@ -53,6 +60,7 @@ bool holdsOnly(const PinnedFrame& frame, std::uint64_t trigger) {
 TEST(FrameHistory, KeepsTheLastSetsAndForgetsOlderOnes) {
   const auto history = makeHistory();
   CameraFrames& frames = history->camera(0);
+  FrameReader& reader = openReader(*history);
   Filler camera(frames);
   EXPECT_EQ(frames.newest(), 0U);
   EXPECT_EQ(frames.oldest(), 0U);
@@ -61,7 +69,7 @@ TEST(FrameHistory, KeepsTheLastSetsAndForgetsOlderOnes) {
   EXPECT_EQ(frames.newest(), 40U);
   EXPECT_EQ(frames.oldest(), 40 - kSets + 1);
   for (std::uint64_t trigger = 1; trigger <= 41; ++trigger) {
-    const auto pinned = frames.tryPin(trigger);
+    const auto pinned = reader.tryPin(0, trigger);
     EXPECT_EQ(pinned.has_value(), trigger > 40 - kSets && trigger <= 40) << trigger;
     if (pinned) {
       EXPECT_TRUE(holdsOnly(*pinned, trigger)) << trigger;
@@ -72,23 +80,25 @@ TEST(FrameHistory, KeepsTheLastSetsAndForgetsOlderOnes) {
 TEST(FrameHistory, HasNoFrameOfATriggerThatTheCameraMissed) {
   const auto history = makeHistory();
   CameraFrames& frames = history->camera(0);
+  FrameReader& reader = openReader(*history);
   Filler camera(frames);
   for (const std::uint64_t trigger : {1U, 2U, 4U, 5U}) camera.deliver(trigger);
   EXPECT_TRUE(frames.holds(2));
   EXPECT_FALSE(frames.holds(3));
-  EXPECT_FALSE(frames.tryPin(3));
-  EXPECT_TRUE(frames.tryPin(4));
-  EXPECT_FALSE(frames.tryPin(0));
+  EXPECT_FALSE(reader.tryPin(0, 3));
+  EXPECT_TRUE(reader.tryPin(0, 4));
+  EXPECT_FALSE(reader.tryPin(0, 0));
 }
 
 TEST(FrameHistory, KeepsAPinnedFrameWhileTheCameraGoesRoundManyTimes) {
   const auto history = makeHistory();
   CameraFrames& frames = history->camera(0);
+  FrameReader& reader = openReader(*history);
   Filler camera(frames);
   for (std::uint64_t trigger = 1; trigger <= 5; ++trigger) camera.deliver(trigger);
   std::vector<PinnedFrame> pins;
   for (std::uint64_t trigger = 2; trigger < 2 + kReserve; ++trigger) {
-    pins.push_back(*frames.tryPin(trigger));
+    pins.push_back(*reader.tryPin(0, trigger));
   }
   for (std::uint64_t trigger = 6; trigger <= 200; ++trigger) camera.deliver(trigger);
   for (std::size_t i = 0; i < pins.size(); ++i) EXPECT_TRUE(holdsOnly(pins[i], 2 + i));
@@ -97,6 +107,7 @@ TEST(FrameHistory, KeepsAPinnedFrameWhileTheCameraGoesRoundManyTimes) {
 TEST(FrameHistory, NeverChangesAFrameUnderARandomReader) {
   const auto history = makeHistory();
   CameraFrames& frames = history->camera(0);
+  FrameReader& reader = openReader(*history);
   constexpr std::uint64_t kTriggers = 4000;
   std::atomic<bool> done{false};
   std::atomic<std::uint64_t> torn{0};
@@ -108,7 +119,7 @@ TEST(FrameHistory, NeverChangesAFrameUnderARandomReader) {
       const std::uint64_t newest = frames.newest();
       const std::uint64_t trigger =
           newest - std::min<std::uint64_t>(newest, random() % (kSets + 2));
-      const auto frame = frames.tryPin(trigger);
+      const auto frame = reader.tryPin(0, trigger);
       if (!frame) continue;
       pinned.fetch_add(1, std::memory_order_relaxed);
       for (int look = 0; look < 3; ++look) {

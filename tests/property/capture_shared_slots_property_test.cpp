@@ -70,6 +70,7 @@ class SharedHistory : public testing::Test {
                                         HistorySharing::kShared);
     ASSERT_TRUE(history) << history.error();
     history_ = std::move(*history);
+    reader_ = *history_->openReader("test", 4);
   }
 
   /// Stores triggers 1..last; each frame holds the number of its camera and trigger.
@@ -87,12 +88,13 @@ class SharedHistory : public testing::Test {
   }
 
   std::unique_ptr<FrameHistory> history_;
+  FrameReader* reader_ = nullptr;
 };
 
 TEST_F(SharedHistory, ServesAsAnyOtherWhetherItCouldBeSharedOrNot) {
   fill(history_->camera(0), 0, 40);
   for (std::uint64_t trigger = 29; trigger <= 40; ++trigger) {
-    const auto frame = history_->camera(0).tryPin(trigger);
+    const auto frame = reader_->tryPin(0, trigger);
     ASSERT_TRUE(frame) << trigger;
     EXPECT_EQ(*frame->pixels, mark(0, trigger));
     EXPECT_EQ(frame->dma_buf.valid(), history_->notShared().empty());
@@ -110,7 +112,7 @@ TEST_F(SharedHistory, EachFramesDmaBufHoldsThatFrame) {
   for (unsigned camera = 0; camera < 2; ++camera) fill(history_->camera(camera), camera, 40);
   for (unsigned camera = 0; camera < 2; ++camera) {
     for (std::uint64_t trigger = 29; trigger <= 40; ++trigger) {
-      const auto frame = history_->camera(camera).tryPin(trigger);
+      const auto frame = reader_->tryPin(camera, trigger);
       ASSERT_TRUE(frame && frame->dma_buf.valid());
       EXPECT_EQ(frame->dma_buf.offset_bytes % kPageBytes, 0U);
       void* const mapped = mmap(nullptr, kPageBytes, PROT_READ, MAP_SHARED, frame->dma_buf.fd,
@@ -129,7 +131,7 @@ TEST(PrivateHistory, HasNoDmaBufs) {
   EXPECT_TRUE((*history)->notShared().empty());
   CameraFrames& frames = (*history)->camera(0);
   (void)frames.store(frames.fillingSlots()[0], {.trigger = 1});
-  const auto frame = frames.tryPin(1);
+  const auto frame = (*(*history)->openReader("test", 1))->tryPin(0, 1);
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->dma_buf.valid());
 }

@@ -86,7 +86,6 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "trigger.genlock_margin_us=900",
                                           "history.sets=200",
                                           "history.in_flight=10",
-                                          "history.reserve=5",
                                           "history.size_down=false",
                                           "display.backend=x",
                                           "display.width_px=1920",
@@ -162,10 +161,20 @@ TEST(Config, RefusesAnUnknownKeyWithLineAndSuggestion) {
               AllOf(StartsWith("kagamid.toml:1: "), HasSubstr("\"trigger\"?")));
 }
 
+TEST(Config, AcceptsAKeyOfAnEarlierVersionAndSaysThatItHasNoEffect) {
+  const auto config = parseConfig("[history]\nsets = 200\nreserve = 4\n", "kagamid.toml");
+  ASSERT_TRUE(config.has_value()) << config.error();
+  EXPECT_EQ(config->history.sets, 200U);
+  ASSERT_EQ(config->warnings.size(), 1U);
+  EXPECT_THAT(config->warnings[0], StartsWith("history.reserve has no effect any more"));
+  EXPECT_TRUE(parseConfig("[history]\nsets = 200\n", "kagamid.toml")->warnings.empty());
+}
+
 TEST(Config, RefusesWrongTypesAndRangesInOneLine) {
   EXPECT_THAT(faultOf("[trigger]\nrate_hz = \"fast\""),
               AllOf(StartsWith("kagamid.toml:2: "), HasSubstr("rate_hz must be a number")));
   EXPECT_THAT(faultOf("[trigger]\nrate_hz = 0"), HasSubstr("rate_hz must be from 0.1 to 1000 Hz"));
+  EXPECT_THAT(faultOf("[history]\nsets = 65535"), HasSubstr("sets must be from 2 to 60000"));
   EXPECT_THAT(faultOf("[cameras]\npixel_format = \"RGB\""),
               HasSubstr("pixel_format must be one of BayerRG8, "));
   EXPECT_THAT(faultOf("[cameras]\naddresses = [\"cam1\"]"), HasSubstr("not an IPv4 address"));

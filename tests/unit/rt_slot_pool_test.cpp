@@ -1,7 +1,9 @@
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "rt/pin_budget.h"
 #include "rt/slot_pool.h"
 
 namespace {
@@ -98,6 +100,32 @@ TEST(SlotPin, UnpinsOnceHoweverOftenItMoves) {
   }
   pool.retire(second);
   EXPECT_EQ(pool.freeSlots(), 2u);
+}
+
+TEST(SlotPin, HoldsAgainWhatIsParkedAlready) {
+  rt::SlotPool pool(2);
+  const std::uint32_t slot = mustAcquire(pool);
+  pool.publish(slot, 7);
+  auto first = pool.tryPin(slot, 7);
+  ASSERT_TRUE(first);
+  pool.retire(slot);
+  auto second = std::optional(first->again());
+  first.reset();
+  EXPECT_TRUE(pool.tryAcquire());
+  EXPECT_FALSE(pool.tryAcquire()) << "the second pin holds the slot";
+  second.reset();
+  EXPECT_EQ(pool.tryAcquire(), slot);
+}
+
+TEST(PinBudget, RefusesAndCountsWhatGoesBeyondIt) {
+  rt::PinBudget budget(2);
+  EXPECT_TRUE(budget.trySpend());
+  EXPECT_TRUE(budget.trySpend());
+  EXPECT_FALSE(budget.trySpend());
+  EXPECT_EQ(budget.refused(), 1U);
+  budget.giveBack();
+  EXPECT_EQ(budget.used(), 1U);
+  EXPECT_TRUE(budget.trySpend());
 }
 
 }  // namespace
