@@ -60,6 +60,7 @@ class AravisCamera final : public Camera {
   }
   void onStream(ArvStreamCallbackType type);
   void deliver();
+  void deliver(ArvBuffer* buffer);
   void configureStream();
   [[nodiscard]] std::string fail(const std::string& what) const {
     return profile_.name + " (" + profile_.address + "): " + what;
@@ -158,15 +159,21 @@ void AravisCamera::onStream(ArvStreamCallbackType type) {
   }
 }
 
+/// All that is in the queue: a camera that still sent while its stream was made has left frames in
+/// it, and each would delay all later ones by a frame.
 void AravisCamera::deliver() {
+  while (ArvBuffer* const buffer = arv_stream_try_pop_buffer(stream_.get())) deliver(buffer);
+}
+
+void AravisCamera::deliver(ArvBuffer* buffer) {
   const rt::Timestamp last_packet = rt::now();
-  ArvBuffer* buffer = arv_stream_try_pop_buffer(stream_.get());
-  if (buffer == nullptr) return;
+  const std::uint64_t id = arv_buffer_get_frame_id(buffer);
+  const bool whole = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
   const FrameArrival arrival{
       .slot = static_cast<std::uint32_t>(
           reinterpret_cast<std::uintptr_t>(arv_buffer_get_user_data(buffer))),
       .status = statusOf(buffer, profile_),
-      .frame_id = frame_ids_.unwrap(arv_buffer_get_frame_id(buffer)),
+      .frame_id = whole ? frame_ids_.unwrap(id) : frame_ids_.ofDamaged(id),
       .camera_clock = rt::Nanoseconds{static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer))},
       .first_packet = stamps_.deliver(last_packet),
       .last_packet = last_packet,

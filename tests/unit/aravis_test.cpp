@@ -26,6 +26,24 @@ TEST(FrameIdUnwrapper, KeepsAGapVisibleAcrossTheWrap) {
   EXPECT_EQ(ids.unwrap(3), 65538U) << "four frames were lost";
 }
 
+TEST(FrameIdUnwrapper, CountsOnForACameraThatDoesNotSkipZero) {
+  FrameIdUnwrapper ids;
+  EXPECT_EQ(ids.unwrap(65535), 65535U);
+  EXPECT_EQ(ids.unwrap(0), 65536U);
+  EXPECT_EQ(ids.unwrap(1), 65537U);
+  EXPECT_EQ(ids.unwrap(65535), 65536U + 65535U);
+  EXPECT_EQ(ids.unwrap(1), 65536U + 65537U) << "the frame with the id 0 was lost";
+}
+
+TEST(FrameIdUnwrapper, IsNotMisledByAFrameWithoutLeader) {
+  FrameIdUnwrapper ids;
+  EXPECT_EQ(ids.unwrap(300), 300U);
+  EXPECT_EQ(ids.ofDamaged(301), 301U) << "its leader came";
+  EXPECT_EQ(ids.ofDamaged(12), 0U) << "the id of the buffer's frame before";
+  EXPECT_EQ(ids.ofDamaged(0), 0U) << "of a buffer that never had one";
+  EXPECT_EQ(ids.unwrap(303), 303U);
+}
+
 TEST(FrameIdUnwrapper, PassesExtendedIdsAsTheyAre) {
   FrameIdUnwrapper ids;
   EXPECT_EQ(ids.unwrap(1'000'000), 1'000'000U);
