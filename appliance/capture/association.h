@@ -26,6 +26,7 @@ class Association {
       : period_(period), camera_delay_(camera_delay), pace_(pace) {}
 
   [[nodiscard]] CameraPace pace() const RT_SAFE { return pace_; }
+  [[nodiscard]] rt::Nanoseconds period() const RT_SAFE { return period_; }
 
   /// The trigger whose frames' leaders arrive nearest to @p arrival; nothing where that is half
   /// a period away or more.
@@ -36,6 +37,12 @@ class Association {
   [[nodiscard]] static std::optional<std::uint64_t> edgeNear(rt::Timestamp fired,
                                                              rt::Nanoseconds within,
                                                              const EdgeBoard& edges) RT_SAFE;
+
+  /// The trigger whose edge may lie less than @p within from @p fired, as far as the board knows
+  /// when the edge left: a thread that was stopped while it drove the line does not know it well.
+  [[nodiscard]] static std::optional<std::uint64_t> edgeMaybeNear(rt::Timestamp fired,
+                                                                  rt::Nanoseconds within,
+                                                                  const EdgeBoard& edges) RT_SAFE;
 
   /// Whether a leader of the edge @p edge can have been seen at @p arrival: not half a period
   /// before it was due. However late is possible: machines are busy.

@@ -12,7 +12,7 @@ bool hasClock(const FrameEvidence& frame) RT_SAFE {
 std::optional<std::uint64_t> FrameNamer::clockFits(const Belief& belief, const FrameEvidence& frame,
                                                    const EdgeBoard& edges) const RT_SAFE {
   const auto trigger =
-      Association::edgeNear(belief.clock_zero + frame.camera_clock, kTolerance, edges);
+      Association::edgeMaybeNear(belief.clock_zero + frame.camera_clock, tolerance_, edges);
   if (!trigger || *trigger <= belief.trigger) return std::nullopt;
   if (!association_.canArrive(edges.edge(*trigger), frame.arrival)) return std::nullopt;
   // A camera that counts from one again was started anew: its clock too may be another one.
@@ -32,7 +32,7 @@ std::optional<std::uint64_t> FrameNamer::countFits(const Belief& belief, const F
 
 std::optional<std::uint64_t> FrameNamer::fits(const Belief& belief, const FrameEvidence& frame,
                                               const EdgeBoard& edges) const RT_SAFE {
-  const bool forgotten = frame.arrival - belief.arrival > kForgottenAfter;
+  const bool forgotten = frame.arrival - belief.arrival > forgotten_after_;
   if (belief.agreeing == 0 || forgotten) return std::nullopt;
   return hasClock(frame) ? clockFits(belief, frame, edges) : countFits(belief, frame, edges);
 }
@@ -45,10 +45,13 @@ FrameName FrameNamer::name(const FrameEvidence& frame, const EdgeBoard& edges) R
   }
   const auto trigger = fits(settled_, frame, edges);
   if (trigger && (!doubted_ || association_.triggerOf(frame.arrival, edges) == trigger)) {
-    // Half of what the clock is off by now: follows its drift, halves an edge's own jitter.
+    // Half of what the clock is off by now: follows its drift, halves an edge's own jitter. What
+    // the edge itself is off says nothing about the clock.
     const rt::Timestamp zero = edges.edge(*trigger) - frame.camera_clock;
+    const rt::Nanoseconds off = zero - settled_.clock_zero;
+    const rt::Nanoseconds unknown = edges.uncertainty(*trigger);
     settled_ = {.agreeing = kAgreeing,
-                .clock_zero = settled_.clock_zero + (zero - settled_.clock_zero) / 2,
+                .clock_zero = settled_.clock_zero + (off - std::clamp(off, -unknown, unknown)) / 2,
                 .trigger = *trigger,
                 .frame_id = frame.frame_id,
                 .arrival = frame.arrival};
@@ -68,7 +71,7 @@ FrameName FrameNamer::doubt(const FrameEvidence& frame, const EdgeBoard& edges,
   doubted_ = was_settled;
   if (was_settled && hasClock(frame) && !possible) {
     between_edges =
-        !Association::edgeNear(settled_.clock_zero + frame.camera_clock, kTolerance, edges);
+        !Association::edgeMaybeNear(settled_.clock_zero + frame.camera_clock, tolerance_, edges);
     if (between_edges) {
       ++settled_.frame_id;  // a frame that nothing asked for uses up an id, and no trigger
     } else {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 
@@ -55,11 +57,21 @@ struct FrameName {
 class FrameNamer {
  public:
   static constexpr unsigned kAgreeing = 3;
-  /// Edges and exposures are that regular, and clocks differ by less over kForgottenAfter.
-  static constexpr rt::Nanoseconds kTolerance = std::chrono::milliseconds(1);
-  static constexpr rt::Nanoseconds kForgottenAfter = std::chrono::seconds(5);
+  /// A clock is forgotten after a silence of 5 s, at slow rates after one of some periods:
+  /// otherwise no frame would ever meet the clock of the one before.
+  [[nodiscard]] static constexpr rt::Nanoseconds forgottenAfter(rt::Nanoseconds period) {
+    return std::max<rt::Nanoseconds>(std::chrono::seconds(5), 4 * period);
+  }
+  /// Edges and exposures are that regular, and clocks differ by less over the time in which they
+  /// are not forgotten. At fast rates it is far less than a period.
+  [[nodiscard]] static constexpr rt::Nanoseconds tolerance(rt::Nanoseconds period) {
+    return std::min<rt::Nanoseconds>(std::chrono::milliseconds(1), period / 4);
+  }
 
-  explicit FrameNamer(Association association) : association_(association) {}
+  explicit FrameNamer(Association association)
+      : association_(association),
+        tolerance_(tolerance(association.period())),
+        forgotten_after_(forgottenAfter(association.period())) {}
 
   /// Frames in the order in which they were sent.
   [[nodiscard]] FrameName name(const FrameEvidence& frame, const EdgeBoard& edges) RT_SAFE;
@@ -92,6 +104,8 @@ class FrameNamer {
                                 bool possible) RT_SAFE;
 
   Association association_;
+  rt::Nanoseconds tolerance_;
+  rt::Nanoseconds forgotten_after_;
   Belief settled_;        // frames are named by it; none when nobody agrees
   Belief candidate_;      // what may replace it
   bool doubted_ = false;  // the last frame did not fit what is settled

@@ -28,7 +28,8 @@ void TriggerLoop::pulse(rt::Timestamp deadline) noexcept {
   const auto edge = drive(true);
   if (!edge) return;
   // The board before anything else: the first packets are only an exposure away.
-  edges_.post(++trigger_, edge->before);
+  const rt::Nanoseconds half = (edge->after - edge->before) / 2;
+  edges_.post(++trigger_, edge->before + half, half);
   if (trace_ != nullptr) {
     trace_->record(TriggerRecord{.trigger = trigger_,
                                  .deadline = deadline,

@@ -244,4 +244,42 @@ TEST_F(FrameNamerTest, TakesTheNearestTriggerOfACameraThatRunsFree) {
   }
 }
 
+TEST_F(FrameNamerTest, NamesAFrameWhoseTriggersEdgeIsNotKnownWell) {
+  settle();
+  for (int i = 0; i < 5; ++i) {
+    // The trigger loop was stopped for 6 ms while it drove the line: the edge left at once.
+    ++trigger_;
+    edges_->post(trigger_, edge(trigger_) + 3ms, 3ms);
+    clock_ += kPeriod;
+    EXPECT_EQ(send(clock_, 100us).trigger, trigger_);
+    EXPECT_EQ(named(), trigger_) << "and the clock is as it was";
+  }
+}
+
+/// Names the frames of a camera that joins at trigger 5, at any rate.
+class FrameNamerAtAnyRate : public testing::TestWithParam<rt::Nanoseconds> {};
+
+TEST_P(FrameNamerAtAnyRate, NamesEveryFrameOnceItIsSettled) {
+  const rt::Nanoseconds period = GetParam();
+  const rt::Nanoseconds delay = period / 10;
+  const auto edges = std::make_unique<EdgeBoard>();
+  FrameNamer namer{Association{period, delay}};
+  for (std::uint64_t trigger = 1; trigger <= 100; ++trigger) {
+    const rt::Timestamp edge = rt::fromNs(5'000'000'000'000) + static_cast<int>(trigger) * period;
+    edges->post(trigger, edge);
+    if (trigger < 5) continue;
+    const rt::Nanoseconds late = period / 20 * static_cast<int>(trigger % 7);
+    const FrameName name = namer.name({.arrival = edge + delay + late,
+                                       .camera_clock = edge - rt::fromNs(4'000'000'000'000),
+                                       .frame_id = trigger},
+                                      *edges);
+    if (trigger >= 5 + FrameNamer::kAgreeing - 1) {
+      EXPECT_EQ(name.trigger, trigger);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, FrameNamerAtAnyRate,
+                         testing::Values(10s, 5s, 1s, 25ms, 10ms, 2ms, 1ms));
+
 }  // namespace
