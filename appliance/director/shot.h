@@ -40,6 +40,7 @@ struct Shot {
   std::uint32_t camera_wanted = 0;  ///< from 0
   std::uint32_t camera_shown = 0;
   std::uint64_t trigger = 0;  ///< 0: nothing is stored that could be shown
+  std::uint64_t hold = 0;     ///< the moment whose frames are to stay; 0: none
   rt::Nanoseconds delay{};    ///< behind the newest stored moment
 
   friend bool operator==(const Shot&, const Shot&) = default;

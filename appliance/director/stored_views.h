@@ -27,6 +27,8 @@ class StoredViews {
   [[nodiscard]] virtual StoredRange range(std::uint32_t camera) const RT_SAFE = 0;
   /// Whether the complete frame of exactly that trigger can be shown now.
   [[nodiscard]] virtual bool holds(std::uint32_t camera, std::uint64_t trigger) const RT_SAFE = 0;
+  /// The moment whose frames are held for a stopped picture, whatever the memory forgets; 0: none.
+  [[nodiscard]] virtual std::uint64_t heldTrigger() const RT_SAFE { return 0; }
   /// Whether the camera delivers.
   [[nodiscard]] virtual bool living(std::uint32_t camera) const RT_SAFE = 0;
 };

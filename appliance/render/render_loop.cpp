@@ -31,6 +31,7 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
       parameters_(parameters),
       view_{.width_px = 0, .height_px = 0, .zoom = parameters.zoom},
       target_(parts.target),
+      hold_(parts.frames),
       director_(parameters.director),
       views_(parts.rig.cameras.size()),
       allowance_(kShareOfPictures, parameters.trigger_period) {}
@@ -52,13 +53,14 @@ void RenderLoop::turn() noexcept {
   const rt::Timestamp wake = rt::now();
   takeCommands();
   Wanted wanted;
-  wanted.shot = director_.tick(wake, parameters_.trigger_period, parts_.frames,
+  wanted.shot = director_.tick(wake, parameters_.trigger_period, hold_,
                                std::span(commands_).first(command_count_));
   command_count_ = 0;
+  hold_.keep(wanted.shot.hold);
   wanted.line = statusLine(wanted.shot, parts_.frames.cameras());
   std::optional<PinnedFrame> frame;
   if (wanted.shot.trigger != 0) {
-    frame = parts_.frames.tryPin(wanted.shot.camera_shown, wanted.shot.trigger);
+    frame = hold_.tryPin(wanted.shot.camera_shown, wanted.shot.trigger);
   }
   // Overtaken since the decision: the next turn decides again.
   const bool ready = frame || wanted.shot.trigger == 0;

@@ -15,6 +15,7 @@
 #include "appliance/light/flicker.h"
 #include "appliance/render/command_queue.h"
 #include "appliance/render/locked_vblanks.h"
+#include "appliance/render/moment_hold.h"
 #include "appliance/render/picture_observer.h"
 #include "appliance/render/render_allowance.h"
 #include "appliance/render/stored_frames.h"
@@ -67,8 +68,9 @@ struct RenderParameters {
 ///          While triggers are locked, a picture that would come a vblank early waits.
 class RenderLoop {
  public:
-  /// The shown frame, and a second one of the same camera.
-  static constexpr std::uint32_t kPinsPerCamera = 2;
+  /// What is shown: a picture may show two moments of one camera. The moment that is held, and the
+  /// next one while it changes. One to spare.
+  static constexpr std::uint32_t kPinsPerCamera = 2 + MomentHold::kPinsPerCamera + 1;
 
   RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
 
@@ -117,6 +119,7 @@ class RenderLoop {
   const RenderParameters parameters_;
   ViewParameters view_;  // of the screen's present mode
   TargetReader target_;
+  MomentHold hold_;
   Director director_;
   CommandQueue panel_commands_;
   CommandQueue control_commands_;
