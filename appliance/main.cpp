@@ -1,6 +1,7 @@
 // kagamid: the appliance daemon. Reads top to bottom as the box starts: configuration, display,
 // pipeline, control interface, then one loop until somebody ends it.
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <expected>
@@ -48,11 +49,19 @@ struct Screen {
   ui::PictureSource* source = nullptr;  // the same object
 };
 
+std::vector<ui::SizePx> sourceSizes(const Rig& rig) {
+  std::vector<ui::SizePx> sizes;
+  for (const RigCamera& camera : rig.cameras) {
+    const ui::SizePx size{camera.width_px, camera.height_px};
+    if (std::ranges::find(sizes, size) == sizes.end()) sizes.push_back(size);
+  }
+  return sizes;
+}
+
 ui::RendererConfig rendererConfig(const Config::Display& config, const Rig& rig) {
   return {.width_px = config.width_px,
           .height_px = config.height_px,
-          .source_width_px = rig.cameras.front().width_px,
-          .source_height_px = rig.cameras.front().height_px,
+          .sources = sourceSizes(rig),
           .font_path = config.font,
           .software_threads = config.render_threads};
 }

@@ -61,14 +61,15 @@ std::expected<void, std::string> probeImport(DmaBufImport& import, DemosaicPass&
                                 .height_px = height_px,
                                 .format = hal::PixelFormat::kMono8,  // drawn as it is
                                 .dma_buf = buffer->part(slot_bytes)};
-  const RenderTarget target = makeRenderTarget(width_px, height_px);
+  const auto target = makeRenderTarget(width_px, height_px);
+  if (!target) return std::unexpected(target.error());
   const std::string size = std::to_string(width_px) + "x" + std::to_string(height_px);
   for (std::uint32_t round = 0; round < 2; ++round) {
     fill(pixels, round);
     const GLuint texture = import.tryImport(source);
     if (texture == 0) return std::unexpected("the driver imports no frame of " + size);
-    pass.draw(texture, source.format, target);
-    if (const std::size_t wrong = countWrong(pixels, target); wrong != 0) {
+    pass.draw(texture, source.format, *target);
+    if (const std::size_t wrong = countWrong(pixels, *target); wrong != 0) {
       return std::unexpected("an imported frame of " + size + " is drawn with " +
                              std::to_string(wrong) + " wrong pixels");
     }

@@ -16,6 +16,8 @@ namespace {
 constexpr rt::Nanoseconds kCommitMargin = std::chrono::microseconds(500);
 // How long after a predicted flip its event is there to be read.
 constexpr rt::Nanoseconds kEventDelay = std::chrono::microseconds(200);
+constexpr rt::Nanoseconds kFirstFitPause = std::chrono::seconds(1);
+constexpr rt::Nanoseconds kLongestFitPause = std::chrono::seconds(8);
 
 rt::Error contextElsewhere() {
   return {rt::Errc::kDeviceLost, 0, "the GL context is bound to another thread"};
@@ -115,6 +117,9 @@ void KmsDisplay::followMode() {
   mode_ = {mode.hdisplay, mode.vdisplay, kms::refreshHz(mode)};
   pacer_.restart(mode_.refresh_hz);
   vblanks_known_.reset();
+  no_buffers_.clear();
+  fit_pause_ = {};
+  next_fit_ = {};
 }
 
 void KmsDisplay::attend(rt::Timestamp now) {
@@ -165,12 +170,21 @@ bool KmsDisplay::buffersFit() const {
          buffers_->heightPx() == mode_.height_px;
 }
 
-rt::Result<void> KmsDisplay::fitBuffers() {
+/// What had no room once is not asked for at each picture: memory comes back slowly, if at all.
+rt::Result<void> KmsDisplay::fitBuffers(rt::Timestamp now) {
   if (buffersFit()) return {};
   queue_.dropAll();
-  if (!renderer_->resize(mode_.width_px, mode_.height_px) || !makeBuffers()) {
-    return std::unexpected(rt::Error{rt::Errc::kNoMemory, 0, "render: buffers of the mode's size"});
+  const rt::Error no_room{rt::Errc::kNoMemory, 0, "render: buffers of the mode's size"};
+  if (now < next_fit_) return std::unexpected(no_room);
+  auto fitted = renderer_->resize(mode_.width_px, mode_.height_px);
+  if (fitted) fitted = makeBuffers();
+  if (!fitted) {
+    no_buffers_ = fitted.error() + ": choose a smaller display.mode";
+    fit_pause_ = std::clamp(2 * fit_pause_, kFirstFitPause, kLongestFitPause);
+    next_fit_ = now + fit_pause_;
+    return std::unexpected(no_room);
   }
+  no_buffers_.clear();
   return {};
 }
 
@@ -186,7 +200,7 @@ rt::Result<hal::RenderInstants> KmsDisplay::render(const hal::Scene& scene) {
   if (mode_.width_px != planned.width_px || mode_.height_px != planned.height_px) {
     return std::unexpected(anotherMode());  // the plan is for the old one
   }
-  if (const auto fit = fitBuffers(); !fit) return std::unexpected(fit.error());
+  if (const auto fit = fitBuffers(rt::now()); !fit) return std::unexpected(fit.error());
   const auto buffer = queue_.tryBeginDraw();
   if (!buffer) return std::unexpected(buffer.error());
   Drawing& drawing = drawings_[*buffer];
@@ -261,7 +275,8 @@ hal::ScreenStatus KmsDisplay::screen() const {
     status.state = hal::ScreenState::kNoScreen;
   }
   status.changes = screen_->changes();
-  std::snprintf(status.message.data(), status.message.size(), "%s", screen_->message().c_str());
+  const std::string& message = no_buffers_.empty() ? screen_->message() : no_buffers_;
+  std::snprintf(status.message.data(), status.message.size(), "%s", message.c_str());
   return status;
 }
 

@@ -84,7 +84,7 @@ class KmsDisplay final : public hal::Display, public PictureSource {
   void onFlip(const kms::FlipEvent& event, rt::Timestamp now);
   void followMode();
   [[nodiscard]] bool buffersFit() const;
-  [[nodiscard]] rt::Result<void> fitBuffers();
+  [[nodiscard]] rt::Result<void> fitBuffers(rt::Timestamp now);
   [[nodiscard]] rt::Result<void> submit(std::uint32_t buffer, std::uint64_t picture_id,
                                         rt::Timestamp now);
 
@@ -94,6 +94,9 @@ class KmsDisplay final : public hal::Display, public PictureSource {
   std::unique_ptr<Renderer> renderer_;
   ScanoutPath path_ = ScanoutPath::kDirect;
   std::optional<ScanoutBuffers> buffers_;  // none after a size that had no room
+  std::string no_buffers_;                 // why, and what to do
+  rt::Nanoseconds fit_pause_{};            // until the next try
+  rt::Timestamp next_fit_;
   ScanoutQueue queue_;
   std::vector<Drawing> drawings_;  // per buffer
   FramePacer pacer_;

@@ -34,6 +34,11 @@ std::expected<std::unique_ptr<OffscreenDisplay>, std::string> OffscreenDisplay::
   auto renderer = Renderer::create(config.renderer);
   if (!renderer) return std::unexpected(renderer.error());
   std::unique_ptr<OffscreenDisplay> display(new OffscreenDisplay(config, std::move(*renderer)));
+  for (std::uint32_t i = 0; i < config.buffers; ++i) {
+    auto target = makeRenderTarget(config.renderer.width_px, config.renderer.height_px);
+    if (!target) return std::unexpected(target.error());
+    display->targets_.push_back(std::move(*target));
+  }
   display->detach();
   return display;
 }
@@ -43,11 +48,7 @@ OffscreenDisplay::OffscreenDisplay(const OffscreenConfig& config,
     : config_(config),
       renderer_(std::move(renderer)),
       chain_(config.buffers, FlipGrid(rt::now(), config.refresh_hz)),
-      pacer_(config.refresh_hz) {
-  for (std::uint32_t i = 0; i < config.buffers; ++i) {
-    targets_.push_back(makeRenderTarget(config.renderer.width_px, config.renderer.height_px));
-  }
-}
+      pacer_(config.refresh_hz) {}
 
 OffscreenDisplay::~OffscreenDisplay() {
   // Where the render thread still holds the context, the objects end with it instead.

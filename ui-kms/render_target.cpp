@@ -1,17 +1,33 @@
 #include "ui-kms/render_target.h"
 
+#include <algorithm>
+
 namespace ui {
 
-RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px) {
+std::expected<RenderTarget, std::string> makeRenderTarget(std::uint32_t width_px,
+                                                          std::uint32_t height_px, GLenum format) {
+  const std::string size = std::to_string(width_px) + "x" + std::to_string(height_px) + " px";
+  GLint most_px = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most_px);
+  if (std::max(width_px, height_px) > static_cast<std::uint32_t>(most_px)) {
+    return std::unexpected(size + " is more than the graphics driver's " + std::to_string(most_px) +
+                           " px each way");
+  }
+  for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; ++i) {
+  }  // earlier ones are not ours
   RenderTarget target;
   target.width_px = width_px;
   target.height_px = height_px;
-  target.colour = gl::makeTexture(GL_RGBA8, static_cast<GLsizei>(width_px),
+  target.colour = gl::makeTexture(format, static_cast<GLsizei>(width_px),
                                   static_cast<GLsizei>(height_px), GL_LINEAR, GL_CLAMP_TO_EDGE);
   target.framebuffer = gl::makeFramebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.colour.get(),
                          0);
+  if (glGetError() != GL_NO_ERROR ||
+      glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return std::unexpected("the graphics driver has no picture of " + size + " to draw into");
+  }
   return target;
 }
 

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <expected>
 #include <span>
+#include <string>
 
 #include "hal/gl/objects.h"
 #include "rt/result.h"
@@ -16,7 +18,11 @@ struct RenderTarget {
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
 };
-[[nodiscard]] RenderTarget makeRenderTarget(std::uint32_t width_px, std::uint32_t height_px);
+/// Of 8 bits per channel, or of another @p format. Errors: one line: larger than the driver's
+/// textures, no memory, or a format that it does not draw into.
+[[nodiscard]] std::expected<RenderTarget, std::string> makeRenderTarget(std::uint32_t width_px,
+                                                                        std::uint32_t height_px,
+                                                                        GLenum format = GL_RGBA8);
 /// RGBA bytes, top row first. Errors: kInvalidConfig, @p rgba has another size.
 [[nodiscard]] rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba);
 

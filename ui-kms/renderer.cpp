@@ -1,6 +1,5 @@
 #include "ui-kms/renderer.h"
 
-#include <cassert>
 #include <cstring>
 #include <vector>
 
@@ -9,6 +8,20 @@
 #include "rt/clock.h"
 
 namespace ui {
+namespace {
+
+hal::RectPx partOf(SizePx picture, const hal::RectPx& where) {
+  return common(where, {0, 0, static_cast<std::int32_t>(picture.width),
+                        static_cast<std::int32_t>(picture.height)});
+}
+
+/// All of @p target from here on.
+void drawInto(const RenderTarget& target) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+  glViewport(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px));
+}
+
+}  // namespace
 
 std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
     const RendererConfig& config) {
@@ -21,23 +34,33 @@ std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
   }
   // OpenCV's helpers have no real-time priority; the render thread must not wait for them.
   if (site == DemosaicSite::kCpu) cv::setNumThreads(1);
-  auto source = SourceTexture::create(site);
+  auto source = SourceCache::create(site);
   if (!source) return std::unexpected(source.error());
   renderer->source_ = std::move(*source);
-  renderer->source_->tryImport(*renderer->context_, config.source_width_px,
-                               config.source_height_px);
-  renderer->font_path_ = config.font_path;
-  if (auto sized = renderer->resize(config.width_px, config.height_px); !sized) {
-    return std::unexpected(sized.error());
+  renderer->source_->tryImport(*renderer->context_, config.sources);
+  for (const SizePx size : config.sources) {
+    if (auto made = renderer->source_->prepare(size); !made) return std::unexpected(made.error());
   }
-  renderer->warmUp(config);
+  auto warp = WarpPass::create();
+  if (!warp) return std::unexpected(warp.error());
+  renderer->warp_ = std::move(*warp);
+  auto blend = BlendTarget::create();
+  if (!blend) return std::unexpected(blend.error());
+  renderer->blend_ = std::move(*blend);
+  renderer->font_path_ = config.font_path;
+  renderer->blending_ = config.blending;
+  auto ready = renderer->resize(config.width_px, config.height_px);
+  if (ready) ready = renderer->warmUp(config);
+  if (!ready) return std::unexpected(ready.error());
   return renderer;
 }
 
 std::expected<void, std::string> Renderer::resize(std::uint32_t width_px, std::uint32_t height_px) {
-  auto warp = WarpPass::create(width_px, height_px);
-  if (!warp) return std::unexpected(warp.error());
-  warp_ = std::move(*warp);
+  const SizePx picture = orientation_.turned(SizePx{width_px, height_px});
+  auto sized = warp_->resize(picture, orientation_);
+  if (sized) sized = blend_->resize(width_px, height_px, blending_);
+  if (!sized) return sized;
+  picture_ = picture;
   auto status = StatusLinePass::create(font_path_, width_px, height_px);
   status_.reset();
   text_warning_.clear();
@@ -51,39 +74,99 @@ std::expected<void, std::string> Renderer::resize(std::uint32_t width_px, std::u
 
 /// Drivers compile at the first draw. That belongs here, on the thread that may take its time
 /// (and whose scheduling policy the driver's threads inherit), not into the first picture.
-void Renderer::warmUp(const RendererConfig& config) {
-  const std::uint32_t width_px = config.source_width_px != 0 ? config.source_width_px : 64;
-  const std::uint32_t height_px = config.source_height_px != 0 ? config.source_height_px : 64;
-  const std::vector<std::byte> black(std::size_t{width_px} * height_px);
+std::expected<void, std::string> Renderer::warmUp(const RendererConfig& config) {
+  const SizePx size = config.sources.empty() ? SizePx{64, 64} : config.sources.front();
+  const std::vector<std::byte> black(std::size_t{size.width} * size.height);
   hal::Scene scene{.count = 1};
   hal::WarpPlan& plan = scene.layers[0].plan;
-  plan.source = {black.data(), width_px, height_px, hal::PixelFormat::kBayerRG8};
+  plan.source = {black.data(), size.width, size.height, hal::PixelFormat::kBayerRG8};
   plan.H_camera_display = {1, 0, -16, 0, 1, -16, 0, 0, 1};  // inner and edge cells both
   plan.lens = {.fx_px = 1, .fy_px = 1, .max_radius = 1e9};
   std::strncpy(scene.status.text.data(), "kagami", scene.status.text.size() - 1);
-  const RenderTarget target = makeRenderTarget(config.width_px, config.height_px);
-  draw(target, scene);
+  const auto target = makeRenderTarget(config.width_px, config.height_px);
+  if (!target) return std::unexpected(target.error());
+  draw(*target, scene);
+  scene.layers[1] = scene.layers[0];
+  scene.layers[1].opacity = 0.5F;
+  scene.count = 2;
+  draw(*target, scene);
+  return {};
 }
 
 hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::Scene& scene,
                                    rt::UniqueFd* fence) {
   hal::RenderInstants instants;
   instants.warp_submit = rt::now();
-  const hal::WarpPlan& plan = scene.layers[0].plan;
-  const bool drawable = scene.count != 0 && plan.source.pixels != nullptr;
-  const auto source = drawable ? source_->load(plan.source) : SourceTexture::Loaded{};
-  instants.imported = source.imported;
+  const Sources sources = load(scene, instants);
   instants.upload_end = rt::now();
-  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
-  glViewport(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px));
-  glClearColor(0, 0, 0, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  if (drawable) warp_->draw(plan, source.colour);
+  if (needsBlending(scene, sources)) {
+    drawInto(blend_->target());
+    drawLayers(scene, sources, WarpPass::Output::kLinear);
+    drawInto(target);
+    blend_->show();
+  } else {
+    drawInto(target);
+    drawLayers(scene, sources, WarpPass::Output::kScreen);
+  }
   if (status_) status_->draw(scene.status);
   if (fence != nullptr) *fence = context_->tryFence();
   if (fence == nullptr || !fence->valid()) glFinish();
   instants.warp_end = rt::now();
   return instants;
+}
+
+/// Demosaiced and uploaded when it returns: the frames' slots may be written again.
+Renderer::Sources Renderer::load(const hal::Scene& scene, hal::RenderInstants& instants) {
+  Sources sources{};
+  instants.imported = scene.count != 0;
+  for (std::uint32_t i = 0; i < scene.count; ++i) {
+    const hal::ViewLayer& layer = scene.layers[i];
+    if (layer.plan.source.pixels == nullptr || !(layer.opacity > 0)) continue;
+    if (partOf(picture_, layer.where).empty()) continue;
+    const auto loaded = source_->load(layer.plan.source, layer.content);
+    sources[i] = loaded.colour;
+    instants.imported = instants.imported && loaded.imported;
+  }
+  source_->finish();
+  return sources;
+}
+
+bool Renderer::needsBlending(const hal::Scene& scene, const Sources& sources) const {
+  for (std::uint32_t i = 0; i < scene.count; ++i) {
+    if (sources[i] == 0) continue;
+    if (scene.layers[i].opacity < 1) return true;
+    for (std::uint32_t below = 0; below < i; ++below) {
+      if (sources[below] == 0) continue;
+      const auto both = common(scene.layers[i].where, scene.layers[below].where);
+      if (!partOf(picture_, both).empty()) return true;
+    }
+  }
+  return false;
+}
+
+/// Into the framebuffer that is bound.
+void Renderer::drawLayers(const hal::Scene& scene, const Sources& sources,
+                          WarpPass::Output output) {
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  if (output == WarpPass::Output::kLinear) {
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  }
+  for (std::uint32_t i = 0; i < scene.count; ++i) {
+    if (sources[i] == 0) continue;
+    const hal::ViewLayer& layer = scene.layers[i];
+    const auto part = partOf(picture_, layer.where);
+    const bool whole = part == partOf(picture_, hal::kWholePicture);
+    if (!whole) {
+      const auto drawn = orientation_.turned(part, picture_);
+      glEnable(GL_SCISSOR_TEST);
+      glScissor(drawn.x, drawn.y, drawn.width, drawn.height);
+    }
+    warp_->draw(i, layer, sources[i], output);
+    if (!whole) glDisable(GL_SCISSOR_TEST);
+  }
+  glDisable(GL_BLEND);
 }
 
 }  // namespace ui

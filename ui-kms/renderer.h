@@ -1,15 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <expected>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/display.h"
 #include "hal/gl/context.h"
+#include "ui-kms/blend_target.h"
+#include "ui-kms/orientation.h"
 #include "ui-kms/render_target.h"
-#include "ui-kms/source_texture.h"
+#include "ui-kms/source_cache.h"
 #include "ui-kms/status_line_pass.h"
 #include "ui-kms/warp_pass.h"
 
@@ -18,17 +22,20 @@ namespace ui {
 struct RendererConfig {
   std::uint32_t width_px = 1280;
   std::uint32_t height_px = 720;
-  /// Of the cameras, so that their storage exists before the first picture.
-  std::uint32_t source_width_px = 0;
-  std::uint32_t source_height_px = 0;
+  /// All distinct ones of the cameras, so that their storage exists before the first picture.
+  std::vector<SizePx> sources;
   std::string font_path;                     ///< empty: the usual places of DejaVu Sans
   std::optional<unsigned> software_threads;  ///< of a software renderer; none: its default
   gbm_device* gbm = nullptr;                 ///< the graphics card; none: any
   DemosaicSite demosaic = DemosaicSite::kAuto;
+  BlendTarget::Storage blending = BlendTarget::Storage::kHalfFloat;  ///< where the driver can
 };
 
 /// From a scene to a finished picture in a render target; what every display of this folder draws
 /// with.
+///
+/// One layer, and layers that lie side by side, are drawn straight into the target. Where one shows
+/// through another, or hides a part of it, all of them are blended in linear light first.
 ///
 /// Threads  create() on a SCHED_OTHER thread; then one caller, which binds the context. With the
 ///          demosaicing on the CPU it ends OpenCV's own threading in this process.
@@ -44,7 +51,7 @@ class Renderer {
   /// Why there is no status line; empty where there is one.
   [[nodiscard]] const std::string& textWarning() const { return text_warning_; }
 
-  /// Another size of pictures from now on. Compiles shaders: tens of milliseconds.
+  /// Another size of pictures from now on.
   /// Errors: one line; the size is as before.
   [[nodiscard]] std::expected<void, std::string> resize(std::uint32_t width_px,
                                                         std::uint32_t height_px);
@@ -55,14 +62,23 @@ class Renderer {
                            rt::UniqueFd* fence = nullptr);
 
  private:
+  using Sources = std::array<GLuint, hal::Scene::kMostLayers>;  // 0: that layer is not drawn
+
   explicit Renderer(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {}
-  void warmUp(const RendererConfig& config);
+  [[nodiscard]] std::expected<void, std::string> warmUp(const RendererConfig& config);
+  [[nodiscard]] Sources load(const hal::Scene& scene, hal::RenderInstants& instants);
+  [[nodiscard]] bool needsBlending(const hal::Scene& scene, const Sources& sources) const;
+  void drawLayers(const hal::Scene& scene, const Sources& sources, WarpPass::Output output);
 
   std::string font_path_;
+  BlendTarget::Storage blending_ = BlendTarget::Storage::kHalfFloat;
+  Orientation orientation_;
+  SizePx picture_;  // upright
 
   std::unique_ptr<gl::Context> context_;  // first, so that it outlives all GL objects
-  std::optional<SourceTexture> source_;
+  std::optional<SourceCache> source_;
   std::optional<WarpPass> warp_;
+  std::optional<BlendTarget> blend_;
   std::optional<StatusLinePass> status_;
   std::string text_warning_;
 };

@@ -103,7 +103,9 @@ std::expected<ScanoutBuffers::Buffer, std::string> ScanoutBuffers::makeCopied(
   auto framebuffer = kms::Framebuffer::create(fd, buffer.dumb.layout());
   if (!framebuffer) return failed("no framebuffer", std::strerror(framebuffer.error()));
   buffer.framebuffer = std::move(*framebuffer);
-  buffer.target = makeRenderTarget(width_px, height_px);
+  auto target = makeRenderTarget(width_px, height_px);
+  if (!target) return std::unexpected(target.error());
+  buffer.target = std::move(*target);
   return buffer;
 }
 

@@ -55,9 +55,9 @@ void WarpMesh::updateVertices(const hal::WarpPlan& plan) {
   const double width_px = plan.source.width_px;
   const double height_px = plan.source.height_px;
   const double max_radius2 = lens.max_radius * lens.max_radius;
-  for (std::uint32_t j = 0; j < rows_; ++j) {
+  for (std::uint32_t j = first_row_; j <= last_row_; ++j) {
     const double y_px = rowPx(j);
-    for (std::uint32_t i = 0; i < columns_; ++i) {
+    for (std::uint32_t i = first_column_; i <= last_column_; ++i) {
       const double x_px = columnPx(i);
       const std::size_t at = std::size_t{j} * columns_ + i;
       const double ray_x = h[0] * x_px + h[1] * y_px + h[2];
@@ -102,12 +102,24 @@ WarpMesh::Cell WarpMesh::classify(std::size_t first) const {
   return (a & b & c & d & kCertain) != 0 ? Cell::kOutside : Cell::kEdge;
 }
 
-void WarpMesh::update(const hal::WarpPlan& plan) {
-  updateVertices(plan);
+void WarpMesh::choose(const hal::RectPx& where) {
+  const auto cell = [](std::int32_t px) { return static_cast<std::uint32_t>(px) / kCellPx; };
+  first_column_ = cell(where.x);
+  first_row_ = cell(where.y);
+  last_column_ = cell(where.x + where.width - 1) + 1;
+  last_row_ = cell(where.y + where.height - 1) + 1;
+}
+
+void WarpMesh::update(const hal::WarpPlan& plan, const hal::RectPx& where) {
   inner_.clear();
   edge_.clear();
-  for (std::uint32_t j = 0; j + 1 < rows_; ++j) {
-    for (std::uint32_t i = 0; i + 1 < columns_; ++i) {
+  const auto drawn = common(
+      where, {0, 0, static_cast<std::int32_t>(width_px_), static_cast<std::int32_t>(height_px_)});
+  if (drawn.empty()) return;
+  choose(drawn);
+  updateVertices(plan);
+  for (std::uint32_t j = first_row_; j < last_row_; ++j) {
+    for (std::uint32_t i = first_column_; i < last_column_; ++i) {
       const std::size_t first = std::size_t{j} * columns_ + i;
       const Cell cell = classify(first);
       if (cell == Cell::kOutside) continue;

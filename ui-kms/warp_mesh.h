@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hal/display.h"
+#include "hal/scene.h"
 
 namespace ui {
 
@@ -15,7 +15,7 @@ struct WarpVertex {
   float ray_x = 0, ray_y = 0, ray_w = 0;
 };
 
-/// The backward map of one plan over a coarse grid of the display.
+/// The backward map of one plan over a coarse grid of the picture.
 ///
 /// A cell wholly inside lens and source is `inner`: the distortion is evaluated at its corners and
 /// interpolated in camera space, so perspective is exact. A cell that the border may cross is
@@ -31,7 +31,8 @@ class WarpMesh {
 
   WarpMesh(std::uint32_t width_px, std::uint32_t height_px);
 
-  void update(const hal::WarpPlan& plan);
+  /// For the cells that touch @p where.
+  void update(const hal::WarpPlan& plan, const hal::RectPx& where = hal::kWholePicture);
 
   [[nodiscard]] const std::vector<WarpVertex>& vertices() const { return vertices_; }
   /// Six indices, two triangles, per cell.
@@ -42,9 +43,13 @@ class WarpMesh {
   [[nodiscard]] double rowPx(std::uint32_t j) const;
   [[nodiscard]] std::uint32_t columns() const { return columns_; }
   [[nodiscard]] std::uint32_t rows() const { return rows_; }
+  /// Of corners that update() worked out; the others are from before.
+  [[nodiscard]] std::uint32_t firstRow() const { return first_row_; }
+  [[nodiscard]] std::uint32_t lastRow() const { return last_row_; }
 
  private:
   enum class Cell : std::uint8_t { kInner, kEdge, kOutside };
+  void choose(const hal::RectPx& where);
   void updateVertices(const hal::WarpPlan& plan);
   [[nodiscard]] Cell classify(std::size_t first) const;
 
@@ -52,6 +57,9 @@ class WarpMesh {
   std::uint32_t height_px_;
   std::uint32_t columns_;  // of corners: one more than cells
   std::uint32_t rows_;
+  // Corners in use, the last ones included.
+  std::uint32_t first_column_ = 0, last_column_ = 0;
+  std::uint32_t first_row_ = 0, last_row_ = 0;
   std::vector<WarpVertex> vertices_;
   std::vector<std::uint8_t> where_;  // per corner: bits of warp_mesh.cpp
   std::vector<std::uint16_t> inner_;

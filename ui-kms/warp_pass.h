@@ -1,48 +1,68 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <expected>
+#include <optional>
 #include <string>
 
-#include "hal/display.h"
 #include "hal/gl/objects.h"
+#include "hal/scene.h"
+#include "ui-kms/orientation.h"
 #include "ui-kms/warp_mesh.h"
 
 namespace ui {
 
-/// Draws one view: backward map, bilinear in linear light, colour gains, sRGB encoding.
+/// Draws one view: backward map, bilinear in linear light, colour gains; then sRGB encoding, or
+/// linear light for blending.
 ///
 /// Threads  The one that has the context.
+/// Memory   create() compiles; resize() makes the meshes of all layers.
 class WarpPass {
  public:
-  [[nodiscard]] static std::expected<WarpPass, std::string> create(std::uint32_t width_px,
-                                                                   std::uint32_t height_px);
+  enum class Output : std::uint8_t {
+    kScreen,  ///< sRGB, opaque
+    kLinear,  ///< linear light times coverage and opacity, for glBlendFunc(ONE, 1 - SRC_ALPHA)
+  };
 
-  /// Into the bound framebuffer. @p source: demosaiced, linear light, the plan's source size.
-  void draw(const hal::WarpPlan& plan, GLuint source);
+  [[nodiscard]] static std::expected<WarpPass, std::string> create();
+
+  /// @p picture: upright. Errors: one line; the size is as before.
+  [[nodiscard]] std::expected<void, std::string> resize(SizePx picture, Orientation orientation);
+
+  /// Into the bound framebuffer; the caller sets the scissor to the layer's rectangle.
+  /// @p source: demosaiced, linear light, the plan's source size. @p index: of the layer.
+  void draw(std::uint32_t index, const hal::ViewLayer& layer, GLuint source, Output output);
 
  private:
-  WarpPass(std::uint32_t width_px, std::uint32_t height_px) : mesh_(width_px, height_px) {}
-  void makeBuffers();
-  void drawInner(const hal::WarpPlan& plan);
-  void drawEdge(const hal::WarpPlan& plan);
-
-  struct InnerUniforms {
-    GLint gain_rgb = -1;
+  struct Mesh {
+    explicit Mesh(SizePx picture) : cells(picture.width, picture.height) {}
+    WarpMesh cells;
+    gl::VertexArray layout;
+    gl::Buffer vertices;
+    gl::Buffer indices;
   };
-  struct EdgeUniforms {
-    GLint gain_rgb = -1, focal_px = -1, centre_px = -1, radial = -1, tangential = -1;
+  struct Program {
+    gl::Program program;
+    GLint gain_rgb = -1, opacity = -1;
+    // Edge cells only.
+    GLint focal_px = -1, centre_px = -1, radial = -1, tangential = -1;
     GLint max_radius2 = -1, source_px = -1;
   };
 
-  WarpMesh mesh_;
-  gl::Program inner_;
-  gl::Program edge_;
-  InnerUniforms inner_at_;
-  EdgeUniforms edge_at_;
-  gl::VertexArray layout_;
-  gl::Buffer positions_;
-  gl::Buffer vertices_;
-  gl::Buffer indices_;
+  WarpPass() = default;
+  [[nodiscard]] static std::expected<Program, std::string> makeProgram(const char* pass,
+                                                                       const std::string& vertex,
+                                                                       const std::string& fragment);
+  [[nodiscard]] static gl::Buffer makePositions(const WarpMesh& cells, Orientation orientation);
+  void makeBuffers(Mesh& mesh) const;
+  static void useFor(const Program& program, const hal::ViewLayer& layer);
+  static void setLens(const Program& program, const hal::WarpPlan& plan);
+
+  std::array<Program, 2> inner_;  // by Output
+  std::array<Program, 2> edge_;
+  gl::Buffer positions_;  // of the corners, on the screen as it hangs
+  std::array<std::optional<Mesh>, hal::Scene::kMostLayers> meshes_;
 };
 
 }  // namespace ui

@@ -175,7 +175,10 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
     const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];
     const auto plan = planWarp(camera, views_[shot.camera_shown],
                                sourceOf(*frame, camera, parameters_.pixel_format));
-    if (plan) scene.layers[scene.count++].plan = *plan;
+    if (plan) {
+      scene.layers[scene.count++] = {.plan = *plan,
+                                     .content = hal::contentOf(shot.camera_shown, shot.trigger)};
+    }
     if (plan && parameters_.flicker_compensation) {
       evenOut(scene.layers[0].plan, shot.camera_shown);
     }

@@ -45,6 +45,16 @@ struct Scene {
                  picture.status.text.size() - 1);
   }
 
+  /// Two cameras beside each other, each frame loaded anew, as in a live comparison.
+  [[nodiscard]] hal::Scene sideBySide() const {
+    hal::Scene both = picture;
+    both.count = 2;
+    both.layers[1] = both.layers[0];
+    both.layers[0].where = {0, 0, display.width / 2, display.height};
+    both.layers[1].where = {display.width / 2, 0, display.width / 2, display.height};
+    return both;
+  }
+
   static constexpr std::size_t kSourcePixels = std::size_t{kSourceWidthPx} * kSourceHeightPx;
   cv::Size display;
   std::vector<std::byte> mosaic;
@@ -74,15 +84,19 @@ Screen* screenOf(const benchmark::State& state, std::string& error) {
   if (!screen.renderer) {
     const ui::RendererConfig config{.width_px = static_cast<std::uint32_t>(state.range(0)),
                                     .height_px = static_cast<std::uint32_t>(state.range(1)),
-                                    .source_width_px = kSourceWidthPx,
-                                    .source_height_px = kSourceHeightPx};
+                                    .sources = {{kSourceWidthPx, kSourceHeightPx}}};
     auto renderer = ui::Renderer::create(config);
     if (!renderer) {
       error = renderer.error();
       return nullptr;
     }
     screen.renderer = std::move(*renderer);
-    screen.target = ui::makeRenderTarget(config.width_px, config.height_px);
+    auto target = ui::makeRenderTarget(config.width_px, config.height_px);
+    if (!target) {
+      error = target.error();
+      return nullptr;
+    }
+    screen.target = std::move(*target);
   }
   if (!screen.renderer->context().bind()) {
     error = "the context is not ours";
@@ -92,8 +106,7 @@ Screen* screenOf(const benchmark::State& state, std::string& error) {
 }
 
 /// From the mosaic in memory to the finished picture, status line included.
-void ours(benchmark::State& state) {
-  const Scene& scene = sceneOf(state);
+void draw(benchmark::State& state, const hal::Scene& picture) {
   std::string error;
   Screen* screen = screenOf(state, error);
   if (screen == nullptr) {
@@ -103,12 +116,19 @@ void ours(benchmark::State& state) {
   }
   double warp_ns = 0;
   for (auto _ : state) {
-    const auto instants = screen->renderer->draw(*screen->target, scene.picture);
+    const auto instants = screen->renderer->draw(*screen->target, picture);
     warp_ns +=
         std::chrono::duration<double, std::nano>(instants.warp_end - instants.upload_end).count();
   }
   state.counters["warp"] = benchmark::Counter(warp_ns, benchmark::Counter::kAvgIterations);
   state.counters["gpu"] = screen->renderer->context().software() ? 0 : 1;
+}
+
+void ours(benchmark::State& state) {
+  draw(state, sceneOf(state).picture);
+}
+void sideBySide(benchmark::State& state) {
+  draw(state, sceneOf(state).sideBySide());
 }
 
 /// What OpenCV works on; the demosaicing is its own, as it is ours on a software renderer.
@@ -180,6 +200,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
   bench->Args({1280, 720})->Args({1920, 1080})->UseRealTime();
 }
 BENCHMARK(ours)->Apply(sizes);
+BENCHMARK(sideBySide)->Apply(sizes);
 BENCHMARK(demosaicAndRemap)->Apply(sizes);
 BENCHMARK(remap)->Apply(sizes);
 BENCHMARK(demosaicAndWarpPerspective)->Apply(sizes);
@@ -221,6 +242,12 @@ std::vector<bench::Comparison> compare(const bench::Repetitions& results, unsign
          .ours = samples("ours" + at, "ours, undistorts"),
          .rival = samples("demosaicAndWarpPerspective" + at, "warpPerspective, does not")});
   }
+  out.push_back({.what = "720p" + with + ", two layers",
+                 .unit = "ms",
+                 .ours = samples("sideBySide/1280/720", "two cameras side by side"),
+                 .rival = samples("ours/1280/720", "one camera"),
+                 .bar = bench::Bar{Kind::kRatioAtMost, 1.7},
+                 .not_judged = gpu ? "a GPU draws" : ""});
   if (!gpu && all_cpus) {
     out.push_back({.what = "EGL on a GPU, all CPUs",
                    .unit = "ms",

@@ -37,8 +37,10 @@ std::unique_ptr<ui::OffscreenDisplay> makeDisplay(ui::DemosaicSite site, cv::Siz
   ui::OffscreenConfig config;
   config.renderer.width_px = static_cast<std::uint32_t>(kDisplay.width);
   config.renderer.height_px = static_cast<std::uint32_t>(kDisplay.height);
-  config.renderer.source_width_px = static_cast<std::uint32_t>(frame.width);
-  config.renderer.source_height_px = static_cast<std::uint32_t>(frame.height);
+  if (!frame.empty()) {
+    config.renderer.sources = {
+        {static_cast<std::uint32_t>(frame.width), static_cast<std::uint32_t>(frame.height)}};
+  }
   config.renderer.demosaic = site;
   config.refresh_hz = 1000;
   auto display = ui::OffscreenDisplay::create(config);

@@ -34,16 +34,29 @@ double encodeSrgb(double linear) {
   return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
 }
 
-}  // namespace
+cv::Vec3f encoded(const cv::Vec3f& linear) {
+  cv::Vec3f code;
+  for (int c = 0; c < 3; ++c) {
+    code[c] = static_cast<float>(255 * encodeSrgb(double{linear[c]}));
+  }
+  return code;
+}
 
-ReferencePicture referenceWarp(const hal::WarpPlan& plan, const cv::Mat3b& linear_rgb,
-                               cv::Size display) {
+struct LinearView {
+  cv::Mat3f light;   // with gains, weighed by cover
+  cv::Mat1f cover;   // 0 to 1: the part of the lookup that lies in the source
+  cv::Mat1b inside;  // as in ReferencePicture
+  cv::Mat1b border;
+};
+
+LinearView warpLinear(const hal::WarpPlan& plan, const cv::Mat3b& linear_rgb, cv::Size display) {
   constexpr float kNowhere = -10;
   cv::Mat1f map_x(display, kNowhere);
   cv::Mat1f map_y(display, kNowhere);
-  ReferencePicture picture{.rgb = cv::Mat3f(display),
-                           .inside = cv::Mat1b(display, uchar{0}),
-                           .border = cv::Mat1b(display, uchar{0})};
+  LinearView view{.light = {},
+                  .cover = {},
+                  .inside = cv::Mat1b(display, uchar{0}),
+                  .border = cv::Mat1b(display, uchar{0})};
   const double width_px = plan.source.width_px;
   const double height_px = plan.source.height_px;
   for (int y = 0; y < display.height; ++y) {
@@ -52,29 +65,53 @@ ReferencePicture referenceWarp(const hal::WarpPlan& plan, const cv::Mat3b& linea
       const bool off = !at.valid || at.u_px <= -1 || at.v_px <= -1 || at.u_px >= width_px ||
                        at.v_px >= height_px;
       if (off) {
-        picture.border(y, x) = 255;
+        view.border(y, x) = 255;
         continue;
       }
       map_x(y, x) = static_cast<float>(at.u_px);
       map_y(y, x) = static_cast<float>(at.v_px);
       const bool inside =
           at.u_px >= 0 && at.v_px >= 0 && at.u_px <= width_px - 1 && at.v_px <= height_px - 1;
-      if (inside) picture.inside(y, x) = 255;
+      if (inside) view.inside(y, x) = 255;
     }
   }
+  const auto& [red, green, blue] = plan.gain_rgb;
   cv::Mat3f linear;
   linear_rgb.convertTo(linear, CV_32FC3, 1.0 / 255);
-  cv::Mat3f warped;
-  cv::remap(linear, warped, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-  const auto& gain = plan.gain_rgb;
-  for (int y = 0; y < display.height; ++y) {
-    for (int x = 0; x < display.width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        picture.rgb(y, x)[c] = static_cast<float>(
-            255 * encodeSrgb(double{warped(y, x)[c]} * double{gain[static_cast<std::size_t>(c)]}));
+  for (cv::Vec3f& pixel : linear) pixel = pixel.mul(cv::Vec3f(red, green, blue));
+  const cv::Mat1f full(linear_rgb.size(), 1.0F);
+  cv::remap(linear, view.light, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  cv::remap(full, view.cover, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  return view;
+}
+
+}  // namespace
+
+ReferencePicture referenceWarp(const hal::WarpPlan& plan, const cv::Mat3b& linear_rgb,
+                               cv::Size display) {
+  const LinearView view = warpLinear(plan, linear_rgb, display);
+  ReferencePicture picture{.rgb = cv::Mat3f(display), .inside = view.inside, .border = view.border};
+  std::transform(view.light.begin(), view.light.end(), picture.rgb.begin(), encoded);
+  return picture;
+}
+
+cv::Mat3f referenceScene(std::span<const ReferenceLayer> layers, cv::Size display) {
+  cv::Mat3f sum(display, cv::Vec3f(0, 0, 0));
+  for (const auto& [layer, linear_rgb] : layers) {
+    const LinearView view = warpLinear(layer.plan, linear_rgb, display);
+    const hal::RectPx where = common(layer.where, {0, 0, display.width, display.height});
+    for (int y = where.y; y < where.y + where.height; ++y) {
+      for (int x = where.x; x < where.x + where.width; ++x) {
+        const float hides = view.cover(y, x) * layer.opacity;
+        for (int c = 0; c < 3; ++c) {
+          const float light = std::min(view.light(y, x)[c], view.cover(y, x)) * layer.opacity;
+          sum(y, x)[c] = sum(y, x)[c] * (1 - hides) + light;
+        }
       }
     }
   }
+  cv::Mat3f picture(display);
+  std::transform(sum.begin(), sum.end(), picture.begin(), encoded);
   return picture;
 }
 

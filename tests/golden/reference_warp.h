@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
+
 #include <opencv2/core.hpp>
 
-#include "hal/display.h"
+#include "hal/scene.h"
 
 /// The same picture as the renderer's by another way: every pixel's backward map in double,
 /// bilinear in linear light by cv::remap on floats, and the sRGB formula itself.
@@ -15,6 +17,15 @@ struct ReferencePicture {
 /// @p linear_rgb: the demosaiced source, 8 bits per channel.
 ReferencePicture referenceWarp(const hal::WarpPlan& plan, const cv::Mat3b& linear_rgb,
                                cv::Size display);
+
+struct ReferenceLayer {
+  const hal::ViewLayer& layer;
+  const cv::Mat3b& linear_rgb;
+};
+
+/// Layers over black, in float and linear light, each with its rectangle, opacity and the part of
+/// a pixel that its camera sees; then the sRGB formula itself. 0 to 255.
+cv::Mat3f referenceScene(std::span<const ReferenceLayer> layers, cv::Size display);
 
 /// In dB over the pixels of @p mask, all channels.
 double psnr(const cv::Mat3f& a, const cv::Mat3f& b, const cv::Mat1b& mask);

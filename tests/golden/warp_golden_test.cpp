@@ -1,103 +1,23 @@
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstring>
-#include <limits>
-#include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "tests/golden/golden_display.h"
 #include "tests/golden/reference_warp.h"
 #include "tests/golden/synthetic_scene.h"
-#include "ui-kms/cpu_demosaic.h"
-#include "ui-kms/offscreen_display.h"
 
 namespace {
 
 constexpr double kEnoughDb = 40;
 const cv::Size kLandscape(1280, 1024);
 const cv::Size kPortrait(1088, 1920);
-const cv::Size kDisplay(1280, 720);
-
-/// One camera picture with everything that is borrowed by a plan for it.
-struct Camera {
-  explicit Camera(cv::Size size, hal::PixelFormat format = hal::PixelFormat::kBayerRG8)
-      : scene(syntheticScene(size)), mosaic(mosaicOf(scene, format)) {
-    plan.source = {mosaic.data(), static_cast<std::uint32_t>(size.width),
-                   static_cast<std::uint32_t>(size.height), format};
-    plan.H_camera_display = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    plan.lens = {.fx_px = 1180,
-                 .fy_px = 1175,
-                 .cx_px = (size.width - 1) / 2.0,
-                 .cy_px = (size.height - 1) / 2.0,
-                 .max_radius = std::numeric_limits<double>::infinity()};
-  }
-
-  /// Zooms by @p scale (source pixels per display pixel) about both centres, turned by @p angle,
-  /// with a tilt that makes w change by @p tilt over the display's width.
-  void look(double scale, double angle, double tilt) {
-    const double cosine = scale * std::cos(angle);
-    const double sine = scale * std::sin(angle);
-    const cv::Matx33d centre(1, 0, -(kDisplay.width - 1) / 2.0, 0, 1, -(kDisplay.height - 1) / 2.0,
-                             0, 0, 1);
-    const cv::Matx33d turn(cosine, -sine, 0, sine, cosine, 0, tilt / kDisplay.width,
-                           tilt / 3 / kDisplay.width, 1);
-    const cv::Matx33d back(1, 0, plan.lens.cx_px, 0, 1, plan.lens.cy_px, 0, 0, 1);
-    const cv::Matx33d h = back * turn * centre;
-    std::copy_n(h.val, 9, plan.H_camera_display.begin());
-  }
-
-  [[nodiscard]] cv::Mat3b demosaiced() const {
-    cv::Mat4b rgba(scene.size());
-    ui::demosaicOnCpu(plan.source, {reinterpret_cast<std::byte*>(rgba.data), rgba.total() * 4});
-    cv::Mat3b rgb;
-    cv::cvtColor(rgba, rgb, cv::COLOR_RGBA2RGB);
-    return rgb;
-  }
-
-  cv::Mat3b scene;
-  std::vector<std::byte> mosaic;
-  hal::WarpPlan plan;
-};
 
 class WarpGolden : public testing::Test {
  protected:
-  static std::unique_ptr<ui::OffscreenDisplay> makeDisplay(
-      ui::DemosaicSite site = ui::DemosaicSite::kCpu, const std::string& font = {}) {
-    ui::OffscreenConfig config;
-    config.renderer.width_px = static_cast<std::uint32_t>(kDisplay.width);
-    config.renderer.height_px = static_cast<std::uint32_t>(kDisplay.height);
-    config.renderer.demosaic = site;
-    config.renderer.font_path = font;
-    config.refresh_hz = 1000;
-    auto display = ui::OffscreenDisplay::create(config);
-    EXPECT_TRUE(display) << display.error();
-    return display ? std::move(*display) : nullptr;
-  }
-
-  /// Renders, commits and reads back.
-  static cv::Mat3f shown(ui::OffscreenDisplay& display, const hal::WarpPlan* plan,
-                         const hal::StatusLine& status = {}) {
-    cv::Mat4b rgba(kDisplay);
-    hal::Scene scene{.status = status};
-    if (plan != nullptr) scene.layers[scene.count++].plan = *plan;
-    EXPECT_TRUE(display.render(scene));
-    // A vblank of 1 ms may have to pass since the last picture.
-    const rt::Timestamp patience = rt::now() + std::chrono::seconds(20);
-    while (!display.commit(1) && rt::now() < patience) std::this_thread::yield();
-    EXPECT_TRUE(display.readPicture({reinterpret_cast<std::byte*>(rgba.data), rgba.total() * 4}));
-    cv::Mat3b rgb;
-    cv::cvtColor(rgba, rgb, cv::COLOR_RGBA2RGB);
-    cv::Mat3f picture;
-    rgb.convertTo(picture, CV_32FC3);
-    return picture;
-  }
-
   static void expectLikeReference(const Camera& camera, int least_inside) {
     const auto display = makeDisplay();
     ASSERT_NE(display, nullptr);

@@ -207,8 +207,7 @@ TEST(ImportOnKms, IsNotTriedWithTheSoftwareRendererAlthoughEglListsIt) {
   ASSERT_NE(gbm, nullptr);
   const auto renderer = ui::Renderer::create({.width_px = 320,
                                               .height_px = 256,
-                                              .source_width_px = 320,
-                                              .source_height_px = 256,
+                                              .sources = {{320, 256}},
                                               .gbm = gbm.get(),
                                               .demosaic = ui::DemosaicSite::kGpu});
   ASSERT_TRUE(renderer) << renderer.error();

@@ -42,6 +42,22 @@ TEST(WarpMesh, ASourceLargerThanTheDisplayNeedsNoPixelwiseCell) {
   EXPECT_TRUE(mesh.edgeIndices().empty());
 }
 
+TEST(WarpMesh, ALayersCellsAreThoseThatItsRectangleTouches) {
+  WarpMesh mesh(128, 64);
+  auto plan = planOf(200, 200);
+  plan.H_camera_display[2] = 10;
+  plan.H_camera_display[5] = 10;
+  mesh.update(plan,
+              {40, 0, 30, 32});  // the second and third of four columns, the first of two rows
+  EXPECT_EQ(mesh.innerIndices().size(), 2 * kPerCell);
+  mesh.update(plan, {-5, 40, 6, 4'000});
+  EXPECT_EQ(mesh.innerIndices().size(), 1 * kPerCell);
+  mesh.update(plan, {128, 0, 10, 10});
+  EXPECT_TRUE(mesh.innerIndices().empty());
+  mesh.update(plan, {0, 0, 0, 10});
+  EXPECT_TRUE(mesh.innerIndices().empty());
+}
+
 TEST(WarpMesh, CellsThatTheSourcesRimCrossesAreEvaluatedPerPixel) {
   WarpMesh mesh(128, 64);
   mesh.update(planOf(40, 200));               // its right rim lies in the second of four columns
