@@ -14,7 +14,7 @@
 #include <malloc.h>
 #include <systemd/sd-daemon.h>
 
-#include "appliance/appliance.h"
+#include "appliance/box/box.h"
 #include "appliance/capture/trigger_wiring.h"
 #include "appliance/config/config.h"
 #include "appliance/control/control_server.h"
@@ -114,7 +114,7 @@ bool scheduleDrawWorkers(const ThreadSchedule& how) {
       {.policy = how.policy, .priority = how.priority, .cpus = how.cpus});
 }
 
-std::unique_ptr<ControlServer> openControl(const Config::Control& config, Appliance& running) {
+std::unique_ptr<ControlServer> openControl(const Config::Control& config, Box& running) {
   if (config.bus == "none") return nullptr;
   auto control = ControlServer::open(config.bus, config.name, running, running);
   if (control) return std::move(*control);
@@ -123,7 +123,7 @@ std::unique_ptr<ControlServer> openControl(const Config::Control& config, Applia
 }
 
 /// Until a stop signal: answers the control interface, watches the cameras, feeds the watchdog.
-void serve(Appliance& running, const Config::Control& config, rt::StopSignals& stop) {
+void serve(Box& running, const Config::Control& config, rt::StopSignals& stop) {
   constexpr rt::Nanoseconds kTick = std::chrono::milliseconds(100);
   auto control = openControl(config, running);
   CameraWatch watch;
@@ -160,6 +160,12 @@ std::expected<void, std::string> releaseLines(const Options& options) {
   return {};
 }
 
+/// Threads that did not stop still use what an orderly end would destroy.
+void endAbruptly(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) logError(line);
+  std::_Exit(EXIT_FAILURE);
+}
+
 /// Errors   One line; nothing is left running.
 std::expected<void, std::string> run(const Site& site, rt::StopSignals& stop) {
   const Config& config = site.config;
@@ -179,10 +185,11 @@ std::expected<void, std::string> run(const Site& site, rt::StopSignals& stop) {
     if (config.realtime.require) return std::unexpected(refused);
     logWarning(refused);
   }
-  auto running = Appliance::start(config, site.rig, display, recorder.get(), site.degraded);
+  auto running =
+      Box::start(site, {.display = display, .observer = recorder.get(), .on_hang = endAbruptly});
   if (!running) return std::unexpected(running.error());
   for (const std::string& line : lightLines(lightWish(config, site.rig))) logInfo(line);
-  for (const std::string& line : (*running)->status().degraded) logWarning(line);
+  for (const Remark& remark : (*running)->status().degraded) logWarning(remark.text);
   logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
           std::string(display.renderer()) + ", frames by " + (*running)->status().source_path);
 

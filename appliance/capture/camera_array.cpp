@@ -46,12 +46,12 @@ CameraDoor doorOf(const Config& config, const RigCamera& camera, std::uint32_t i
 }  // namespace
 
 CameraArray::CameraArray(const Config& config, const Rig& rig, FrameHistory& history,
-                         CaptureBoard& board, TraceWriter* trace, std::size_t first_producer)
+                         CaptureBoard& board, TraceWriter* trace)
     : rig_(rig) {
   for (std::uint32_t i = 0; i < history.cameras(); ++i) {
     collectors_.push_back(std::make_unique<Collector>(
         i, associationOf(config), history.camera(i), board,
-        trace != nullptr ? &trace->producer(first_producer + i) : nullptr));
+        trace != nullptr ? &trace->addProducer("camera" + std::to_string(i + 1)) : nullptr));
     supervisors_.push_back(std::make_unique<CameraSupervisor>(
         doorOf(config, rig.cameras[i], i), *collectors_[i], history.camera(i), board.edges));
   }
@@ -88,10 +88,11 @@ std::vector<CameraStatus> CameraArray::statuses() const {
   return statuses;
 }
 
-std::vector<std::string> CameraArray::remarks() const {
-  std::vector<std::string> remarks;
-  for (const auto& supervisor : supervisors_) {
-    for (std::string& remark : supervisor->remarks()) remarks.push_back(std::move(remark));
+std::vector<Remark> CameraArray::remarks() const {
+  std::vector<Remark> remarks;
+  for (std::size_t i = 0; i < supervisors_.size(); ++i) {
+    const std::string key = "camera " + std::to_string(i + 1);
+    for (std::string& text : supervisors_[i]->remarks()) remarks.push_back({key, std::move(text)});
   }
   for (std::size_t i = 0; i < collectors_.size(); ++i) {
     if (collectors_[i]->counts().no_slot == 0) continue;

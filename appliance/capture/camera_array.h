@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <expected>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include "appliance/capture/frame_history.h"
 #include "appliance/config/config.h"
 #include "appliance/geometry/rig.h"
+#include "appliance/status/status_section.h"
 #include "appliance/trace/trace_writer.h"
 
 namespace appliance {
@@ -25,9 +25,9 @@ namespace appliance {
 /// Memory   Everything given outlives the array.
 class CameraArray {
  public:
-  /// @p trace: none, or one with a producer per camera from @p first_producer on.
+  /// @p trace: none, or one that has not begun yet.
   CameraArray(const Config& config, const Rig& rig, FrameHistory& history, CaptureBoard& board,
-              TraceWriter* trace, std::size_t first_producer);
+              TraceWriter* trace);
 
   /// All at once; returns when every camera streams or is known not to. One that does not is named
   /// in statuses() and tried again for as long as it takes.
@@ -36,8 +36,8 @@ class CameraArray {
   void stop();
 
   [[nodiscard]] std::vector<CameraStatus> statuses() const;
-  /// What is not as it should be although a camera streams, or would: one line each.
-  [[nodiscard]] std::vector<std::string> remarks() const;
+  /// What is not as it should be although a camera streams, or would.
+  [[nodiscard]] std::vector<Remark> remarks() const;
   /// The sums over all cameras.
   [[nodiscard]] CollectorCounts counts() const;
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "appliance/control/status.h"
 #include "appliance/director/command.h"
+#include "appliance/status/status.h"
 
 /// What a request of the control interface means in the present state: pure.
 /// Errors   One line for the person who asked.

@@ -119,8 +119,8 @@ int appendCameraReasons(sd_bus_message* reply, const Status& status) {
 
 int appendDegraded(sd_bus_message* reply, const Status& status) {
   if (const int r = sd_bus_message_open_container(reply, 'a', "s"); r < 0) return r;
-  for (const std::string& line : status.degraded)
-    if (const int r = sd_bus_message_append(reply, "s", line.c_str()); r < 0) return r;
+  for (const Remark& remark : status.degraded)
+    if (const int r = sd_bus_message_append(reply, "s", remark.text.c_str()); r < 0) return r;
   return sd_bus_message_close_container(reply);
 }
 

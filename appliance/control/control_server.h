@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "appliance/control/status.h"
+#include "appliance/status/status.h"
 #include "rt/clock.h"
 
 namespace appliance {

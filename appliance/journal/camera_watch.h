@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "appliance/control/status.h"
+#include "appliance/status/status.h"
 #include "rt/clock.h"
 
 namespace appliance {

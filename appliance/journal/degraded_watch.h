@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "appliance/control/status.h"
+#include "appliance/status/status.h"
 
 namespace appliance {
 
@@ -14,17 +14,19 @@ namespace appliance {
 /// Threads  main.
 class DegradedWatch {
  public:
-  /// @p told: the lines of the start.
-  explicit DegradedWatch(std::vector<std::string> told) : told_(std::move(told)) {}
+  /// @p told: the remarks of the start.
+  explicit DegradedWatch(const std::vector<Remark>& told) {
+    for (const Remark& remark : told) told_.push_back(remark.text);
+  }
 
   /// The lines that were not there at any look before: each is told once in a run, however often
   /// what it tells of comes and goes.
   [[nodiscard]] std::vector<std::string> look(const Status& status) {
     std::vector<std::string> lines;
-    for (const std::string& line : status.degraded) {
-      if (std::ranges::find(told_, line) != told_.end()) continue;
-      lines.push_back(line);
-      told_.push_back(line);
+    for (const Remark& remark : status.degraded) {
+      if (std::ranges::find(told_, remark.text) != told_.end()) continue;
+      lines.push_back(remark.text);
+      told_.push_back(remark.text);
     }
     return lines;
   }

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "appliance/control/status.h"
+#include "appliance/status/status.h"
 
 namespace appliance {
 

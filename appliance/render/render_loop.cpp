@@ -84,18 +84,17 @@ void RenderLoop::turn() noexcept {
   counters_.shot = wanted.shot;
   counters_.target = wanted.target;
   counters_.exposure_middle = wanted.exposure_middle;
+  parts_.shown.exposure_middle.store(wanted.exposure_middle, std::memory_order_relaxed);
   status_.publish(counters_);
-  mode_.store(wanted.shot.mode, std::memory_order_relaxed);
+  parts_.shown.mode.store(wanted.shot.mode, std::memory_order_relaxed);
 }
 
 void RenderLoop::takeCommands() noexcept {
-  for (CommandQueue* queue : {&panel_commands_, &control_commands_}) {
-    while (command_count_ < commands_.size()) {
-      const auto event = queue->tryPop();
-      if (!event) break;
-      commands_[command_count_++] = event->command;
-      if (first_command_ == rt::Timestamp{}) first_command_ = event->at;
-    }
+  while (command_count_ < commands_.size()) {
+    const auto event = parts_.commands.tryTake();
+    if (!event) break;
+    commands_[command_count_++] = event->command;
+    if (first_command_ == rt::Timestamp{}) first_command_ = event->at;
   }
 }
 

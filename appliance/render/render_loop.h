@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "appliance/capture/capture_board.h"
+#include "appliance/director/command_inbox.h"
 #include "appliance/director/director.h"
+#include "appliance/director/shown_board.h"
 #include "appliance/geometry/homography.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
 #include "appliance/light/flicker.h"
-#include "appliance/render/command_queue.h"
 #include "appliance/render/locked_vblanks.h"
 #include "appliance/render/moment_hold.h"
 #include "appliance/render/picture_observer.h"
@@ -43,6 +44,8 @@ struct RenderParts {
   const Rig& rig;
   StoredFrames& frames;  ///< by a reader that may pin RenderLoop::kPinsPerCamera
   CaptureBoard& board;
+  CommandInbox& commands;
+  ShownBoard& shown;
   const TargetTrack& target;
   hal::Display& display;
   TraceProducer* trace;       ///< none: not traced
@@ -58,10 +61,10 @@ struct RenderParameters {
   bool flicker_compensation = false;
 };
 
-/// Shows the picture that the director decides on, whenever the shown camera has a new frame or
-/// somebody gave a command.
+/// Shows the picture that the director decides on, whenever the shown camera has a new frame or a
+/// command was given.
 ///
-/// Threads  run(): the `render` thread. status(): one reader. mode(): any thread.
+/// Threads  run(): the `render` thread. status(): one reader.
 /// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
 ///          monitored, not RT safe. It stands above receiving and keeps to an allowance, so that
 ///          capture has 40 % of every CPU.
@@ -76,19 +79,13 @@ class RenderLoop {
 
   void run(const std::stop_token& stop) noexcept;
 
-  /// Where the panel's and the control interface's threads put their commands; ring
-  /// CaptureBoard::wake_render afterwards.
-  [[nodiscard]] CommandQueue& panelCommands() { return panel_commands_; }
-  [[nodiscard]] CommandQueue& controlCommands() { return control_commands_; }
-
-  /// Gives the screen to whom wants it, or takes it back; the last call counts. Any thread; ring
-  /// CaptureBoard::wake_render afterwards.
+  /// Releases the screen for another program, or takes it back. The last call wins. Any thread.
   void setScreenReleased(bool released) noexcept {
     screen_released_.store(released, std::memory_order_relaxed);
+    parts_.board.wake_render.ring();
   }
 
   [[nodiscard]] RenderStatus status() { return status_.latest(); }
-  [[nodiscard]] Mode mode() const { return mode_.load(std::memory_order_relaxed); }
 
  private:
   struct Wanted {
@@ -121,8 +118,6 @@ class RenderLoop {
   TargetReader target_;
   MomentHold hold_;
   Director director_;
-  CommandQueue panel_commands_;
-  CommandQueue control_commands_;
   std::vector<View> views_;  // of every camera
 
   // Since the last picture.
@@ -142,7 +137,6 @@ class RenderLoop {
   rt::Timestamp second_begin_;  // of the second that is being counted
   std::uint32_t shown_in_second_ = 0;
   rt::LatestValue<RenderStatus> status_;
-  std::atomic<Mode> mode_{Mode::kLive};
   std::atomic<bool> screen_released_{false};
 };
 

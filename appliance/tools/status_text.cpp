@@ -1,14 +1,33 @@
 #include "appliance/tools/status_text.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 namespace appliance {
+namespace {
+
+/// One line per section that has one, under the same column as the core's lines.
+std::string sectionLines(const nlohmann::ordered_json& sections) {
+  constexpr std::size_t kColumn = 9;
+  std::string text;
+  for (const auto& [key, section] : sections.items()) {
+    const std::string line = section.at("line").get<std::string>();
+    if (line.empty()) continue;
+    std::string label = key;
+    label.resize(std::max(label.size() + 1, kColumn), ' ');
+    text += label + line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
 
 std::expected<std::string, std::string> statusText(const std::string& json) {
-  const auto status = nlohmann::json::parse(json, nullptr, false);
+  const auto status = nlohmann::ordered_json::parse(json, nullptr, false);
   try {
     std::array<char, 768> head{};
     const int view = status.at("view_wanted").get<int>();
@@ -45,10 +64,7 @@ std::expected<std::string, std::string> statusText(const std::string& json) {
       text += "; lost " + std::to_string(unlocks) + " times, the last by " +
               status.at("genlock").at("last_unlock").get<std::string>();
     text += "\n";
-    const std::string light = status.value("light", "");
-    if (!light.empty()) text += "light    " + light + "\n";
-    const std::string depth = status.value("depth_sensor", "");
-    if (!depth.empty()) text += "depth    " + depth + "\n";
+    text += sectionLines(status.at("sections"));
     int number = 0;
     for (const auto& camera : status.at("cameras")) {
       ++number;

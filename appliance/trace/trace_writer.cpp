@@ -1,5 +1,6 @@
 #include "appliance/trace/trace_writer.h"
 
+#include <cassert>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -21,11 +22,11 @@ std::string describe(const std::string& path, int error) {
 
 }  // namespace
 
-std::expected<std::unique_ptr<TraceWriter>, std::string> TraceWriter::open(const std::string& path,
-                                                                           std::size_t producers) {
+std::expected<std::unique_ptr<TraceWriter>, std::string> TraceWriter::open(
+    const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "we");
   if (file == nullptr) return std::unexpected(describe(path, errno));
-  return std::unique_ptr<TraceWriter>(new TraceWriter(path, file, producers));
+  return std::unique_ptr<TraceWriter>(new TraceWriter(path, file));
 }
 
 void TraceWriter::begin(const RunRecord& run) {
@@ -33,11 +34,14 @@ void TraceWriter::begin(const RunRecord& run) {
   thread_ = std::jthread([this](const std::stop_token& stop) { this->run(stop); });
 }
 
-TraceWriter::TraceWriter(std::string path, std::FILE* file, std::size_t producers)
-    : path_(std::move(path)), file_(file) {
+TraceProducer& TraceWriter::addProducer(std::string name) {
+  assert(!thread_.joinable());
+  producers_.push_back(std::make_unique<TraceProducer>(std::move(name)));
+  return *producers_.back();
+}
+
+TraceWriter::TraceWriter(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {
   (void)std::setvbuf(file, nullptr, _IOFBF, kFileBufferBytes);
-  for (std::size_t i = 0; i < producers; ++i)
-    producers_.push_back(std::make_unique<TraceProducer>());
 }
 
 std::uint64_t TraceWriter::dropped() const {

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <expected>
@@ -10,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "appliance/trace/records.h"
@@ -24,11 +24,16 @@ namespace appliance {
 /// RT       record() is wait-free.
 class TraceProducer {
  public:
+  /// @p name: whose records these are: "render".
+  explicit TraceProducer(std::string name) : name_(std::move(name)) {}
+
   void record(const TraceRecord& record) RT_SAFE { (void)ring_.tryPush(record); }
   [[nodiscard]] std::uint64_t dropped() const RT_SAFE { return ring_.dropped(); }
+  [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
   friend class TraceWriter;
+  const std::string name_;
   static constexpr std::uint32_t kRecords = 512;  // 12 s of one camera at 40 Hz
   rt::SpscRing<TraceRecord, kRecords> ring_;
 };
@@ -36,15 +41,17 @@ class TraceProducer {
 /// Writes the trace file: one thread, SCHED_OTHER, empties the producers' rings a few times a
 /// second. Producers never wait for it; what it is too slow for is dropped and counted.
 ///
-/// Threads  open(), begin(), finish(): the owner. producer(i): set up by the owner, then used by
-///          one thread.
-/// Memory   All rings are made in open(); the writer outlives its producers' last record().
+/// Threads  All members: the owner. A producer: one thread.
+/// Memory   All rings are made before begin(); the writer outlives its producers' last record().
 /// Errors   A file that cannot be made or written: one line for a person. Writing errors while
 ///          running stop the writing, not the daemon, and are told by finish().
 class TraceWriter {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<TraceWriter>, std::string> open(
-      const std::string& path, std::size_t producers);
+      const std::string& path);
+
+  /// The end for one more thread. Before begin().
+  [[nodiscard]] TraceProducer& addProducer(std::string name);
 
   /// Writes the head and starts to drain. Until then the rings hold what is recorded: the
   /// threads that the head lists may already run.
@@ -53,8 +60,6 @@ class TraceWriter {
   ~TraceWriter() = default;  ///< without finish(): the records not yet written are gone
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
-
-  [[nodiscard]] TraceProducer& producer(std::size_t index) { return *producers_[index]; }
 
   /// Records that found a full ring so far, all producers together.
   [[nodiscard]] std::uint64_t dropped() const;
@@ -67,7 +72,7 @@ class TraceWriter {
     void operator()(std::FILE* file) const { (void)std::fclose(file); }
   };
 
-  TraceWriter(std::string path, std::FILE* file, std::size_t producers);
+  TraceWriter(std::string path, std::FILE* file);
   void run(const std::stop_token& stop);
   void drain();
   void write(const std::string& text);

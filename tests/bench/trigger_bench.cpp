@@ -81,16 +81,17 @@ bool runTriggerLoop(const Turn& turn, std::vector<double>& late_us, std::vector<
   const std::string path = folder / "trace.jsonl";
   Wire wire(turn.cpu);
   auto line = hal::emulated::EmulatedTriggerLine::open(wire.port());
-  auto trace = appliance::TraceWriter::open(path, 1);
+  auto trace = appliance::TraceWriter::open(path);
   if (!line || !trace) {
     std::fprintf(stderr, "trigger: %s\n", (!line ? line.error() : trace.error()).c_str());
     return false;
   }
+  appliance::TraceProducer& producer = (*trace)->addProducer("trigger");
   (*trace)->begin({});
   appliance::EdgeBoard edges;
   appliance::GenlockBoard genlock;
   appliance::TriggerLoop loop({.period = turn.interval, .pulse_width = 100us}, **line, edges,
-                              genlock, &(*trace)->producer(0));
+                              genlock, &producer);
   auto thread =
       rt::Thread::start({.name = "trigger",
                          .policy = turn.realtime ? rt::SchedPolicy::kFifo : rt::SchedPolicy::kOther,

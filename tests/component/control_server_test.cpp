@@ -65,7 +65,7 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     status.cameras[6].state = appliance::CameraState::kLost;
     status.cameras[6].reason = "no frames since 0.4 s: check its cable";
     status.cameras[6].frames_lost = 3;
-    status.degraded = {"memory is not locked", "view 7 \"rear\" is lost"};
+    status.degraded = {{"memory", "memory is not locked"}, {"camera 7", "view 7 \"rear\" is lost"}};
     return status;
   }
   void fill() {

@@ -26,15 +26,18 @@ TEST(TraceWriter, WritesWhatManyThreadsRecordOrCountsWhatItLost) {
   constexpr std::uint32_t kProducers = 6;
   constexpr std::uint64_t kRecords = 5000;
   const std::string path = temporaryFile("trace");
-  auto writer = TraceWriter::open(path, kProducers);
+  auto writer = TraceWriter::open(path);
   ASSERT_TRUE(writer.has_value()) << writer.error();
+  std::vector<appliance::TraceProducer*> producers;
+  for (std::uint32_t camera = 0; camera < kProducers; ++camera)
+    producers.push_back(&(*writer)->addProducer("camera " + std::to_string(camera + 1)));
   (*writer)->begin({.cameras = kProducers});
   {
     std::vector<std::jthread> threads;
     for (std::uint32_t camera = 0; camera < kProducers; ++camera)
       threads.emplace_back([&, camera] {
         for (std::uint64_t id = 1; id <= kRecords; ++id) {
-          (*writer)->producer(camera).record(FrameRecord{.camera = camera, .frame_id = id});
+          producers[camera]->record(FrameRecord{.camera = camera, .frame_id = id});
           if (id % 128 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
       });
@@ -58,10 +61,11 @@ TEST(TraceWriter, WritesWhatManyThreadsRecordOrCountsWhatItLost) {
 
 TEST(TraceWriter, CountsWhatFindsAFullRing) {
   const std::string path = temporaryFile("full");
-  auto writer = TraceWriter::open(path, 1);
+  auto writer = TraceWriter::open(path);
   ASSERT_TRUE(writer.has_value()) << writer.error();
-  // No thread drains before begin().
-  for (std::uint64_t i = 1; i <= 1000; ++i) (*writer)->producer(0).record(SetRecord{i, {}});
+  // Rings are drained from begin() on.
+  appliance::TraceProducer& producer = (*writer)->addProducer("one");
+  for (std::uint64_t i = 1; i <= 1000; ++i) producer.record(SetRecord{i, {}});
   const std::uint64_t lost = (*writer)->dropped();
   EXPECT_GT(lost, 0u);
   (*writer)->begin({});
@@ -75,17 +79,18 @@ TEST(TraceWriter, CountsWhatFindsAFullRing) {
 }
 
 TEST(TraceWriter, SaysThatAFileCannotBeMade) {
-  const auto writer = TraceWriter::open("/nonexistent/folder/trace.jsonl", 1);
+  const auto writer = TraceWriter::open("/nonexistent/folder/trace.jsonl");
   ASSERT_FALSE(writer.has_value());
   EXPECT_THAT(writer.error(), HasSubstr("/nonexistent/folder/trace.jsonl: cannot write the trace"));
 }
 
 TEST(TraceWriter, TellsAFullDiskAtTheEndAndGoesOnTillThen) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
-  auto writer = TraceWriter::open("/dev/full", 1);
+  auto writer = TraceWriter::open("/dev/full");
   ASSERT_TRUE(writer.has_value()) << writer.error();
+  appliance::TraceProducer& producer = (*writer)->addProducer("one");
   (*writer)->begin({});
-  for (std::uint64_t i = 1; i <= 500; ++i) (*writer)->producer(0).record(SetRecord{i, {}});
+  for (std::uint64_t i = 1; i <= 500; ++i) producer.record(SetRecord{i, {}});
   const auto finished = (*writer)->finish({});
   ASSERT_FALSE(finished.has_value());
   EXPECT_THAT(finished.error(), HasSubstr("No space left"));

@@ -166,12 +166,16 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
   ASSERT_EQ(history->notShared(), "");
   CaptureBoard board(1);
   HistoryViews shown(**history->openReader("render", RenderLoop::kPinsPerCamera), board.edges);
+  CommandInbox commands(board.wake_render);
+  ShownBoard on_screen;
   const TargetTrack target;
   NotingDisplay display;
   ImportCounter observer;
   RenderLoop loop({.rig = rig,
                    .frames = shown,
                    .board = board,
+                   .commands = commands,
+                   .shown = on_screen,
                    .target = target,
                    .display = display,
                    .trace = nullptr,

@@ -49,6 +49,24 @@ TEST(LayerTable, RefusesABackendInTheApplianceButNotInItsMain) {
   EXPECT_THAT(smallTable().violations({.path = "appliance/main.cpp", .lines = lines}), IsEmpty());
 }
 
+TEST(LayerTable, AllowsAFolderItsOwnHeaderWithARowAndOthersOnlyIfTheyNameIt) {
+  const auto table = LayerTable::fromPage({.path = "docs/page.md",
+                                           .lines = {
+                                               "| Folder | May include | Libraries |",
+                                               "|---|---|---|",
+                                               "| `a/value.h` | - | - |",
+                                               "| `a` | - | - |",
+                                               "| `b` | `a/value.h` | - |",
+                                           }});
+  const std::vector<std::string> value = {"#include \"a/value.h\""};
+  EXPECT_THAT(table.violations({.path = "a/x.cpp", .lines = value}), IsEmpty());
+  EXPECT_THAT(table.violations({.path = "b/x.cpp", .lines = value}), IsEmpty());
+  EXPECT_THAT(table.violations({.path = "b/x.cpp", .lines = {"#include \"a/x.h\""}}),
+              ElementsAre(HasSubstr("b may not include a (a/x.h)")));
+  EXPECT_THAT(table.violations({.path = "a/value.h", .lines = {"#include \"a/x.h\""}}),
+              ElementsAre(HasSubstr("a/value.h may not include a (a/x.h)")));
+}
+
 TEST(LayerTable, RefusesALibraryThatTheFolderDoesNotName) {
   EXPECT_THAT(smallTable().violations({.path = "hal/camera.h", .lines = {"#include <arv.h>"}}),
               ElementsAre(HasSubstr("hal may not use the library of <arv.h>")));

@@ -157,11 +157,12 @@ TEST(CameraWatch, DoesNotCountWhatIsLostBeforeACameraStreams) {
 
 TEST(DegradedWatch, TellsEachLineOnceAndNoneOfTheStart) {
   appliance::DegradedWatch watch({"no real-time priority"});
-  EXPECT_TRUE(watch.look({.degraded = {"no real-time priority"}}).empty());
-  EXPECT_THAT(watch.look({.degraded = {"no real-time priority", "panel: gone"}}),
-              ElementsAre("panel: gone"));
+  EXPECT_TRUE(watch.look({.degraded = {{"realtime", "no real-time priority"}}}).empty());
+  EXPECT_THAT(
+      watch.look({.degraded = {{"realtime", "no real-time priority"}, {"panel", "panel: gone"}}}),
+      ElementsAre("panel: gone"));
   EXPECT_TRUE(watch.look({}).empty());
-  EXPECT_TRUE(watch.look({.degraded = {"panel: gone"}}).empty());
+  EXPECT_TRUE(watch.look({.degraded = {{"panel", "panel: gone"}}}).empty());
 }
 
 }  // namespace

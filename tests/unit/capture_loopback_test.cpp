@@ -99,7 +99,7 @@ TEST(Loopback, FindsWrongPolarityAndADeadLine) {
 
 TEST(Loopback, RecordsWhichTriggerEveryEdgeWas) {
   const test::TemporaryFolder folder;
-  auto trace = TraceWriter::open(folder / "trace.jsonl", 1);
+  auto trace = TraceWriter::open(folder / "trace.jsonl");
   ASSERT_TRUE(trace.has_value()) << trace.error();
   EdgeBoard board;
   constexpr rt::Nanoseconds kPeriod = 25ms;
@@ -113,7 +113,7 @@ TEST(Loopback, RecordsWhichTriggerEveryEdgeWas) {
   }
   wire.edges.push_back({.active = true, .at = start + 100s});  // a disturbance
   {
-    LoopbackLoop loop(kPeriod, wire, board, (*trace)->producer(0));
+    LoopbackLoop loop(kPeriod, wire, board, (*trace)->addProducer("loopback"));
     std::jthread thread([&](const std::stop_token& stop) { loop.run(stop); });
     while (!wire.drained) std::this_thread::sleep_for(1ms);
   }

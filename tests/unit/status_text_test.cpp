@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "appliance/control/status.h"
+#include "appliance/status/status.h"
 
 namespace {
 
@@ -55,6 +55,32 @@ TEST(StatusText, HasALineForTheGenlockAndItsLosses) {
   status.genlock.last_unlock = GenlockReason::kNoVblanks;
   EXPECT_THAT(*appliance::statusText(appliance::toJson(status)),
               HasSubstr("; lost 3 times, the last by no_vblanks\n"));
+}
+
+TEST(Status, HasTheSectionsOfThePartsAsLineAndValues) {
+  Status status = someStatus();
+  status.sections = {
+      {.key = "depth",
+       .line = "streaming: a sensor",
+       .values = {{"rate_hz", 29.5}, {"lost", std::int64_t{3}}, {"colour", true}}},
+      {.key = "commands", .line = "", .values = {{"panel_refused", std::int64_t{0}}}}};
+  const auto sections = nlohmann::json::parse(appliance::toJson(status)).at("sections");
+  EXPECT_EQ(
+      sections.at("depth"),
+      (nlohmann::json{
+          {"line", "streaming: a sensor"}, {"rate_hz", 29.5}, {"lost", 3}, {"colour", true}}));
+  EXPECT_EQ(sections.at("commands").at("panel_refused"), 0);
+}
+
+TEST(StatusText, HasALineForEverySectionThatHasOne) {
+  Status status = someStatus();
+  status.sections = {{.key = "depth", .line = "streaming"},
+                     {.key = "commands", .line = ""},
+                     {.key = "calibration", .line = "3 of 20 views"}};
+  const auto text = appliance::statusText(appliance::toJson(status));
+  ASSERT_TRUE(text.has_value()) << text.error();
+  EXPECT_THAT(*text, HasSubstr("depth    streaming\ncalibration 3 of 20 views\n"));
+  EXPECT_THAT(*text, Not(HasSubstr("commands")));
 }
 
 TEST(StatusText, SaysWhatIsWrongWithACameraAndWhatToDo) {

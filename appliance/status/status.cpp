@@ -1,4 +1,4 @@
-#include "appliance/control/status.h"
+#include "appliance/status/status.h"
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +26,13 @@ nlohmann::ordered_json genlockObject(const Status& status) {
           {"last_unlock", nameOf(genlock.last_unlock)}};
 }
 
+nlohmann::ordered_json sectionObject(const StatusSection& section) {
+  nlohmann::ordered_json object = {{"line", section.line}};
+  for (const StatusValue& value : section.values)
+    std::visit([&](const auto& held) { object[value.name] = held; }, value.value);
+  return object;
+}
+
 }  // namespace
 
 std::string toJson(const Status& status) {
@@ -42,11 +49,12 @@ std::string toJson(const Status& status) {
       {"frames_lost", status.frames_lost},
       {"frames_away", status.frames_away},
       {"frames_incomplete", status.frames_incomplete},
+      {"frames_unattributed", status.frames_unattributed},
+      {"pictures_skipped", status.pictures_skipped},
       {"cameras", nlohmann::ordered_json::array()},
       {"genlock", genlockObject(status)},
-      {"light", status.light_text},
-      {"depth_sensor", status.depth_text},
-      {"degraded", status.degraded},
+      {"sections", nlohmann::ordered_json::object()},
+      {"degraded", nlohmann::ordered_json::array()},
       {"renderer", status.renderer},
       {"screen", {{"state", nameOf(status.screen)}, {"message", status.screen_message}}},
       {"source_path", status.source_path},
@@ -59,6 +67,9 @@ std::string toJson(const Status& status) {
                                  {"frames_away", camera.frames_away},
                                  {"frames_incomplete", camera.frames_incomplete}});
   }
+  for (const StatusSection& section : status.sections)
+    object["sections"][section.key] = sectionObject(section);
+  for (const Remark& remark : status.degraded) object["degraded"].push_back(remark.text);
   return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -10,6 +10,7 @@
 #include "appliance/capture/genlock_status.h"
 #include "appliance/director/command.h"
 #include "appliance/director/shot.h"
+#include "appliance/status/status_section.h"
 #include "hal/display.h"
 
 namespace appliance {
@@ -29,12 +30,13 @@ struct Status {
   std::uint64_t frames_lost = 0;
   std::uint64_t frames_away = 0;
   std::uint64_t frames_incomplete = 0;
+  std::uint64_t frames_unattributed = 0;  ///< no trigger is known to have caused them
+  std::uint64_t pictures_skipped = 0;     ///< the display was not ready for them
   std::vector<CameraStatus> cameras;
   GenlockStatus genlock;
-  std::string genlock_text;           ///< the same in one line
-  std::string light_text;             ///< how much the light flickers; empty: not compensated
-  std::string depth_text;             ///< the depth sensor in one line; empty: none configured
-  std::vector<std::string> degraded;  ///< one line per thing that is less than configured
+  std::string genlock_text;             ///< the same in one line
+  std::vector<Remark> degraded;         ///< one per thing that is less than configured
+  std::vector<StatusSection> sections;  ///< of the parts that are not in every box
   std::string renderer;
   hal::ScreenState screen = hal::ScreenState::kShowing;
   std::string screen_message;  ///< why nothing or less is shown, and what to do; may be empty
@@ -43,7 +45,8 @@ struct Status {
 
 [[nodiscard]] std::string_view nameOf(hal::ScreenState state);
 
-/// One JSON object with the names of the fields above; views from 1.
+/// One JSON object with the names of the fields above; views from 1. A section is an object of its
+/// line and its values, named after its key.
 [[nodiscard]] std::string toJson(const Status& status);
 
 /// Where the control interface looks.

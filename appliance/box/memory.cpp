@@ -1,0 +1,72 @@
+#include "appliance/box/memory.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+
+#include "rt/memory.h"
+
+namespace appliance {
+namespace {
+
+constexpr std::uint32_t kFewestSets = 8;
+
+std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available) {
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "memory: the history of %u sets takes %.1f GB, %.1f GB are available: lower "
+                "history.sets, or free memory",
+                layout.sets, static_cast<double>(layout.bytes()) * 1e-9,
+                static_cast<double>(available) * 1e-9);
+  return line;
+}
+
+std::string fewerSets(std::uint32_t fitted, std::uint32_t wanted, double rate_hz) {
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "memory is short: the history holds %u sets (%.1f s) instead of %u", fitted,
+                fitted / rate_hz, wanted);
+  return line;
+}
+
+}  // namespace
+
+std::expected<std::unique_ptr<FrameHistory>, std::string> makeHistory(const Config& config,
+                                                                      const Rig& rig,
+                                                                      const HistoryUse& use,
+                                                                      Remarks& remarks) {
+  HistoryLayout layout{.frame_bytes = {},
+                       .sets = config.history.sets,
+                       .in_flight = config.history.in_flight,
+                       .reserve = use.pins_per_camera};
+  for (const RigCamera& camera : rig.cameras) {
+    layout.frame_bytes.push_back(std::size_t{camera.width_px} * camera.height_px);
+  }
+  const std::uint64_t available = rt::availableMemoryBytes();
+  const std::uint64_t margin = rt::LockedArena::kMarginBytes;
+  const auto fitted = fitHistory(layout, available > margin ? available - margin : 0, kFewestSets);
+  if (!fitted || (fitted->sets < layout.sets && !config.history.size_down)) {
+    return std::unexpected(historyTooLarge(layout, available));
+  }
+  if (fitted->sets < layout.sets) {
+    remarks.add("history", fewerSets(fitted->sets, layout.sets, config.trigger.rate_hz));
+  }
+  return FrameHistory::create(*fitted,
+                              use.shared ? HistorySharing::kShared : HistorySharing::kPrivate);
+}
+
+std::expected<void, std::string> lockMemory(const Config::Realtime& realtime,
+                                            const FrameHistory& history, Remarks& remarks) {
+  if (!realtime.lock_memory) return {};
+  const rt::MemoryLock lock = rt::lockMemory();
+  if (lock.locked && history.memory().report().locked) return {};
+  std::string refused = lock.locked
+                            ? "the frame history is not locked in memory: raise the memlock "
+                              "limit (LimitMEMLOCK=infinity)"
+                            : lock.message;
+  if (realtime.require) return std::unexpected(refused);
+  remarks.add("memory", std::move(refused));
+  return {};
+}
+
+}  // namespace appliance

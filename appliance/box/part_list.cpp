@@ -1,0 +1,68 @@
+#include "appliance/box/part_list.h"
+
+#include <array>
+#include <cstdio>
+#include <future>
+#include <ranges>
+#include <thread>
+#include <utility>
+
+namespace appliance {
+
+PartList::~PartList() {
+  (void)stop();
+  while (!parts_.empty()) parts_.pop_back();  // a vector would begin with the first one
+}
+
+std::expected<void, std::string> PartList::start() {
+  for (const auto& part : parts_) {
+    auto started = part->start();
+    if (started) continue;
+    std::string why = std::move(started.error());
+    for (const std::string& hung : stop()) why += "; " + hung;
+    return std::unexpected(std::move(why));
+  }
+  return {};
+}
+
+std::vector<std::string> PartList::stop() {
+  std::vector<std::string> hung;
+  if (std::exchange(stopped_, true)) return hung;
+  for (std::unique_ptr<Part>& part : std::views::reverse(parts_)) {
+    if (stopInTime(*part)) continue;
+    std::array<char, 128> line{};
+    (void)std::snprintf(line.data(), line.size(),
+                        "part %.*s does not stop within %.1f s: the process ends without it",
+                        static_cast<int>(part->name().size()), part->name().data(),
+                        std::chrono::duration<double>(patience_).count());
+    hung.emplace_back(line.data());
+    (void)part.release();  // its thread still uses it
+  }
+  std::erase(parts_, nullptr);
+  hung_ = !hung.empty();
+  return hung;
+}
+
+bool PartList::stopInTime(Part& part) const {
+  std::packaged_task<void()> task([&part] { part.stop(); });
+  const std::future<void> done = task.get_future();
+  std::thread stopper(std::move(task));
+  if (done.wait_for(patience_) != std::future_status::ready) {
+    stopper.detach();
+    return false;
+  }
+  stopper.join();
+  return true;
+}
+
+void PartList::report(Status& status) const {
+  for (const auto& part : parts_) part->report(status);
+}
+
+std::expected<void, std::string> PartList::handle(const Request& request) {
+  for (const auto& part : parts_)
+    if (const Answer answer = part->handle(request)) return *answer;
+  return std::unexpected("no part of this box knows \"" + request.verb + "\"");
+}
+
+}  // namespace appliance

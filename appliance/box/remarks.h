@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "appliance/status/status_section.h"
+
+namespace appliance {
+
+/// What became less than configured while the box was set up, and stays so for the run.
+///
+/// Threads  main.
+class Remarks {
+ public:
+  void add(std::string key, std::string text) {
+    remarks_.push_back({.key = std::move(key), .text = std::move(text)});
+  }
+  [[nodiscard]] const std::vector<Remark>& list() const { return remarks_; }
+
+ private:
+  std::vector<Remark> remarks_;
+};
+
+}  // namespace appliance

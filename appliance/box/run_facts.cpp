@@ -1,0 +1,50 @@
+#include "appliance/box/run_facts.h"
+
+#include <utility>
+
+#include "appliance/capture/camera_status.h"
+#include "appliance/trace/process_facts.h"
+#include "hal/pixel_format.h"
+
+namespace appliance {
+
+RunRecord runRecord(const Shared& shared, const Status& status) {
+  std::vector<std::string> degraded;
+  for (const Remark& remark : status.degraded) degraded.push_back(remark.text);
+  for (std::size_t i = 0; const CameraStatus& camera : status.cameras) {
+    const std::string who = cameraTitle(i++, camera.name);
+    if (!camera.reason.empty()) degraded.push_back(who + camera.reason);
+  }
+  const hal::DisplayMode mode = shared.display.mode();
+  const rt::ArenaReport& memory = shared.history.memory().report();
+  return {.cameras = shared.history.cameras(),
+          .width_px = shared.rig.cameras.front().width_px,
+          .height_px = shared.rig.cameras.front().height_px,
+          .pixel_format = hal::genicamName(shared.config.cameras.pixel_format),
+          .trigger_hz = shared.config.trigger.rate_hz,
+          .display_width_px = mode.width_px,
+          .display_height_px = mode.height_px,
+          .refresh_hz = mode.refresh_hz,
+          .renderer = status.renderer,
+          .source_path = status.source_path,
+          .history_sets = shared.history.sets(),
+          .memory_bytes = memory.bytes,
+          .memory_locked = memory.locked,
+          .threads = tracedThreads(),
+          .degraded = std::move(degraded),
+          .start = rt::now()};
+}
+
+SummaryRecord summaryRecord(const Status& status) {
+  return {.clean_stop = true,
+          .stop = rt::now(),
+          .cpu_seconds = cpuSeconds(),
+          .memory_bytes = residentBytes(),
+          .frames_lost = status.frames_lost,
+          .frames_away = status.frames_away,
+          .frames_incomplete = status.frames_incomplete,
+          .frames_unattributed = status.frames_unattributed,
+          .pictures_skipped = status.pictures_skipped};
+}
+
+}  // namespace appliance

@@ -1,0 +1,25 @@
+#include "appliance/box/threads.h"
+
+#include <utility>
+
+namespace appliance {
+
+std::expected<rt::Thread, std::string> Threads::start(
+    const std::string& name, const ThreadSchedule& how,
+    std::function<void(const std::stop_token&)> body) {
+  auto started = rt::Thread::start(threadConfig(name, how), std::move(body));
+  if (!started) {
+    return std::unexpected("thread " + name + " does not start: " + started.error().where +
+                           ": check [realtime] in the configuration");
+  }
+  if (!started->grant().complete()) {
+    std::string refused = "thread " + name +
+                          " runs without its real-time priority: grant CAP_SYS_NICE or "
+                          "LimitRTPRIO=95";
+    if (require_) return std::unexpected(refused);
+    remarks_.add("thread " + name, std::move(refused));
+  }
+  return std::move(*started);
+}
+
+}  // namespace appliance

@@ -1,0 +1,51 @@
+#include "appliance/capture/cameras_part.h"
+
+#include <algorithm>
+
+#include "appliance/box/shared.h"
+#include "appliance/capture/camera_array.h"
+#include "appliance/config/durations.h"
+
+namespace appliance {
+namespace {
+
+class CamerasPart final : public Part {
+ public:
+  explicit CamerasPart(const Shared& shared)
+      : shared_(shared),
+        cameras_(shared.config, shared.rig, shared.history, shared.board, shared.trace) {}
+
+  [[nodiscard]] std::string_view name() const override { return "cameras"; }
+
+  [[nodiscard]] std::expected<void, std::string> start() override { return cameras_.start(); }
+
+  void stop() override { cameras_.stop(); }
+
+  void report(Status& status) const override {
+    const std::uint64_t stored =
+        std::min<std::uint64_t>(shared_.board.edges.newest(), shared_.history.sets());
+    status.history_ms = static_cast<std::uint32_t>(
+        stored * periodOf(shared_.config.trigger.rate_hz) / std::chrono::milliseconds(1));
+    for (Remark& remark : cameras_.remarks()) status.degraded.push_back(std::move(remark));
+    for (std::string& text : shared_.history.remarks())
+      status.degraded.push_back({"history", std::move(text)});
+    status.cameras = cameras_.statuses();
+    const CollectorCounts counts = cameras_.counts();
+    status.frames_lost = counts.missing;
+    status.frames_away = counts.away;
+    status.frames_incomplete = counts.damaged();
+    status.frames_unattributed = counts.unattributed;
+  }
+
+ private:
+  const Shared& shared_;
+  CameraArray cameras_;
+};
+
+}  // namespace
+
+MadePart makeCamerasPart(const Shared& shared) {
+  return std::make_unique<CamerasPart>(shared);
+}
+
+}  // namespace appliance

@@ -1,0 +1,105 @@
+#include "appliance/capture/trigger_part.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "appliance/box/shared.h"
+#include "appliance/capture/genlock_text.h"
+#include "appliance/capture/loopback.h"
+#include "appliance/capture/trigger_loop.h"
+#include "appliance/capture/trigger_wiring.h"
+#include "appliance/config/durations.h"
+
+namespace appliance {
+namespace {
+
+TriggerTiming timingOf(const Config::Trigger& config) {
+  return {.period = periodOf(config.rate_hz),
+          .pulse_width = microseconds(config.pulse_width_us),
+          .genlock = config.genlock,
+          .genlock_margin = microseconds(config.genlock_margin_us)};
+}
+
+class TriggerPart final : public Part {
+ public:
+  /// @p loopback: none, or an input that reads @p line's edges.
+  TriggerPart(const Shared& shared, std::unique_ptr<hal::TriggerLine> line,
+              std::unique_ptr<hal::EdgeInput> loopback)
+      : shared_(shared),
+        period_(periodOf(shared.config.trigger.rate_hz)),
+        line_(std::move(line)),
+        loopback_(std::move(loopback)),
+        loop_(timingOf(shared.config.trigger), *line_, shared.board.edges, shared.board.genlock,
+              shared.traceProducer("trigger")) {
+    if (loopback_ && shared.trace != nullptr)
+      loopback_loop_.emplace(period_, *loopback_, shared.board.edges,
+                             *shared.traceProducer("loopback"));
+  }
+
+  [[nodiscard]] std::string_view name() const override { return "trigger"; }
+
+  [[nodiscard]] std::expected<void, std::string> start() override {
+    if (loopback_loop_) {
+      auto thread = shared_.threads.start("loopback", {},
+                                          [this](const auto& stop) { loopback_loop_->run(stop); });
+      if (!thread) return std::unexpected(thread.error());
+      loopback_thread_ = std::move(*thread);
+    }
+    auto thread = shared_.threads.start("trigger", shared_.config.realtime.trigger,
+                                        [this](const auto& stop) { loop_.run(stop); });
+    if (!thread) return std::unexpected(thread.error());
+    thread_ = std::move(*thread);
+    return {};
+  }
+
+  void stop() override {
+    if (thread_.joinable()) {
+      thread_ = {};
+      // Frames of the last triggers are still on the wire: the cameras stop after this.
+      std::this_thread::sleep_for(2 * period_);
+    }
+    loopback_thread_ = {};
+  }
+
+  void report(Status& status) const override {
+    status.triggers = shared_.board.edges.newest();
+    status.genlock = shared_.board.genlock.status.load();
+    status.genlock_text = genlockText(status.genlock, shared_.config.trigger.rate_hz);
+    if (loop_.failing())
+      status.degraded.push_back(
+          {"trigger",
+           "trigger: pulses do not leave: the line's device is gone: check it, then restart"});
+  }
+
+ private:
+  const Shared& shared_;
+  const rt::Nanoseconds period_;
+  const std::unique_ptr<hal::TriggerLine> line_;
+  const std::unique_ptr<hal::EdgeInput> loopback_;
+  TriggerLoop loop_;
+  std::optional<LoopbackLoop> loopback_loop_;
+  rt::Thread loopback_thread_;
+  rt::Thread thread_;
+};
+
+}  // namespace
+
+MadePart makeTriggerPart(const Shared& shared) {
+  const Config::Trigger& config = shared.config.trigger;
+  auto line = openTriggerLine(config);
+  if (!line) return std::unexpected(line.error());
+  std::unique_ptr<hal::EdgeInput> loopback;
+  if (!config.loopback_line.empty()) {
+    auto opened = openLoopback(config, **line);
+    if (!opened)
+      shared.remarks.add("loopback", opened.error() + "; the edges are not measured");
+    else
+      loopback = std::move(*opened);
+  }
+  return std::make_unique<TriggerPart>(shared, std::move(*line), std::move(loopback));
+}
+
+}  // namespace appliance

@@ -1,0 +1,66 @@
+#include "appliance/depth/depth_part.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "appliance/box/shared.h"
+#include "appliance/depth/depth_loop.h"
+#include "appliance/depth/depth_settings.h"
+#include "hal/backends.h"
+
+namespace appliance {
+namespace {
+
+StatusSection sectionOf(const DepthReport& report) {
+  return {.key = "depth",
+          .line = depthText(report),
+          .values = {{"rate_hz", report.rate_hz},
+                     {"frames", static_cast<std::int64_t>(report.sensor.frames)},
+                     {"lost", static_cast<std::int64_t>(report.sensor.lost)},
+                     {"returns", static_cast<std::int64_t>(report.sensor.returns)}}};
+}
+
+class DepthPart final : public Part {
+ public:
+  DepthPart(const Shared& shared, std::unique_ptr<hal::DepthSensor> sensor)
+      : shared_(shared), loop_(std::move(sensor), shared.depth) {}
+
+  [[nodiscard]] std::string_view name() const override { return "depth"; }
+
+  [[nodiscard]] std::expected<void, std::string> start() override {
+    auto thread = shared_.threads.start("depth", {}, [this](const auto& stop) { loop_.run(stop); });
+    if (!thread) return std::unexpected(thread.error());
+    thread_ = std::move(*thread);
+    return {};
+  }
+
+  void stop() override { thread_ = {}; }
+
+  void report(Status& status) const override {
+    const DepthReport report = loop_.report();
+    status.sections.push_back(sectionOf(report));
+    if (std::string trouble = depthTrouble(report); !trouble.empty())
+      status.degraded.push_back({"depth", std::move(trouble)});
+  }
+
+ private:
+  const Shared& shared_;
+  DepthLoop loop_;
+  rt::Thread thread_;
+};
+
+}  // namespace
+
+MadePart makeDepthPart(const Shared& shared) {
+  const Config::DepthSensor& config = shared.config.depth_sensor;
+  if (config.backend == "none") return nullptr;
+  auto sensor = hal::openDepthSensor(config.backend, depthSensorSettings(config));
+  if (!sensor) {
+    shared.remarks.add("depth", sensor.error() + "; the box runs without its depth sensor");
+    return nullptr;
+  }
+  return std::make_unique<DepthPart>(shared, std::move(*sensor));
+}
+
+}  // namespace appliance

@@ -1,0 +1,121 @@
+#include "appliance/render/render_part.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "appliance/box/shared.h"
+#include "appliance/capture/camera_settings.h"
+#include "appliance/config/durations.h"
+#include "appliance/render/history_views.h"
+#include "appliance/render/render_loop.h"
+
+namespace appliance {
+namespace {
+
+std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
+  std::vector<rt::Nanoseconds> ladder;
+  for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
+  return ladder;
+}
+
+RenderParts partsOf(const Shared& shared, StoredFrames& frames) {
+  return {.rig = shared.rig,
+          .frames = frames,
+          .board = shared.board,
+          .commands = shared.commands,
+          .shown = shared.shown,
+          .target = shared.target,
+          .display = shared.display,
+          .trace = shared.traceProducer("render"),
+          .observer = shared.observer};
+}
+
+RenderParameters parametersOf(const Config& config) {
+  return {.trigger_period = periodOf(config.trigger.rate_hz),
+          .edge_to_exposure_middle =
+              microseconds(commonDelay_us(config.cameras) + config.cameras.exposure_us / 2),
+          .zoom = config.display.zoom,
+          .pixel_format = config.cameras.pixel_format,
+          .director = {.sweep_views_per_second = config.director.sweep_views_per_s,
+                       .delay_ladder = delayLadder(config.director)},
+          .flicker_compensation = config.display.flicker_compensation};
+}
+
+std::string sourcePath(const Shared& shared) {
+  std::string reason(shared.display.uploadReason());
+  if (reason.empty()) reason = shared.history.notShared();
+  return reason.empty() ? "dma-buf" : "upload: " + reason;
+}
+
+class RenderPart final : public Part {
+ public:
+  RenderPart(const Shared& shared, FrameReader& reader)
+      : shared_(shared),
+        renderer_(shared.display.renderer()),
+        source_path_(sourcePath(shared)),
+        frames_(reader, shared.board.edges),
+        loop_(partsOf(shared, frames_), parametersOf(shared.config)) {}
+
+  [[nodiscard]] std::string_view name() const override { return "render"; }
+
+  [[nodiscard]] std::expected<void, std::string> start() override {
+    auto thread = shared_.threads.start("render", shared_.config.realtime.render,
+                                        [this](const auto& stop) { loop_.run(stop); });
+    if (!thread) return std::unexpected(thread.error());
+    thread_ = std::move(*thread);
+    return {};
+  }
+
+  void stop() override {
+    if (!thread_.joinable()) return;
+    thread_.requestStop();
+    shared_.board.wake_render.ring();
+    thread_ = {};
+  }
+
+  void report(Status& status) const override {
+    const RenderStatus render = loop_.status();
+    status.mode = render.shot.mode;
+    status.view_wanted = render.shot.camera_wanted;
+    status.view_shown = render.shot.camera_shown;
+    status.delay_ms = static_cast<std::uint32_t>(render.shot.delay / std::chrono::milliseconds(1));
+    const TargetPoint& target = render.target.point;
+    status.target_m = {target.x_m, target.y_m, target.z_m};
+    status.target_origin = nameOf(render.target.origin);
+    status.shown_hz = render.shown_hz;
+    status.pictures_skipped = render.skipped;
+    status.renderer = renderer_;
+    status.source_path = source_path_;
+    status.screen = render.screen.state;
+    status.screen_message = render.screen.message.data();
+    if (shared_.config.display.flicker_compensation)
+      status.sections.push_back({.key = "light", .line = flickerText(render.flicker)});
+  }
+
+  [[nodiscard]] Answer handle(const Request& request) override {
+    if (request.verb != "screen.release" && request.verb != "screen.take") return std::nullopt;
+    loop_.setScreenReleased(request.verb == "screen.release");
+    return std::expected<void, std::string>{};
+  }
+
+ private:
+  const Shared& shared_;
+  const std::string renderer_;
+  const std::string source_path_;
+  HistoryViews frames_;
+  mutable RenderLoop loop_;  // status() takes the newest of a hand-over
+  rt::Thread thread_;
+};
+
+static_assert(kRenderPins == RenderLoop::kPinsPerCamera);
+
+}  // namespace
+
+MadePart makeRenderPart(const Shared& shared) {
+  auto reader = shared.history.openReader("render", kRenderPins);
+  if (!reader) return std::unexpected(reader.error());
+  return std::make_unique<RenderPart>(shared, **reader);
+}
+
+}  // namespace appliance
