@@ -184,7 +184,7 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
   }
 
   const auto drawn = parts_.display.render(scene);
-  const rt::Timestamp drawn_at = rt::now();
+  allowance_.spend(wake, rt::now());  // a picture that the display refuses took its time, too
   const bool new_live = shot.mode == Mode::kLive && shot.trigger != on_screen_.shot.trigger;
   if (drawn && frame && new_live) {
     noteReady(frame->frame);
@@ -196,7 +196,6 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
     ++counters_.skipped;
     return false;
   }
-  allowance_.spend(wake, drawn_at);
   ++counters_.pictures;
   if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
   picture_id_ = record.picture_id;
