@@ -93,12 +93,10 @@ std::vector<Remark> CameraArray::remarks() const {
   for (std::size_t i = 0; i < supervisors_.size(); ++i) {
     const std::string key = "camera " + std::to_string(i + 1);
     for (std::string& text : supervisors_[i]->remarks()) remarks.push_back({key, std::move(text)});
-  }
-  for (std::size_t i = 0; i < collectors_.size(); ++i) {
     if (collectors_[i]->counts().no_slot == 0) continue;
-    remarks.push_back(rig_.cameras[i].name +
-                      ": frames were dropped because readers held every free slot: please report "
-                      "this");
+    remarks.push_back({key, rig_.cameras[i].name +
+                                ": frames were dropped because readers held every free slot: "
+                                "please report this"});
   }
   return remarks;
 }

@@ -74,12 +74,16 @@ TEST(RenderLoop, SpendsItsAllowanceOnPicturesThatTheDisplayRefuses) {
   rig.cameras.push_back({.name = "only", .width_px = 64, .height_px = 64});
   NoFrames frames;
   CaptureBoard board(1);
+  CommandInbox commands(board.wake_render);
+  ShownBoard shown;
   const TargetTrack target;
   RefusingDisplay display;
   constexpr rt::Nanoseconds kPeriod = 10ms;
   RenderLoop loop({.rig = rig,
                    .frames = frames,
                    .board = board,
+                   .commands = commands,
+                   .shown = shown,
                    .target = target,
                    .display = display,
                    .trace = nullptr,
