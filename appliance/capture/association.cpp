@@ -3,8 +3,7 @@
 namespace appliance {
 namespace {
 
-// A frame is looked for among this many newest triggers: more than a frame's whole way
-// (exposure, transfer, resends) can take.
+// The newest triggers that are considered: a frame's exposure, transfer and resends take less.
 constexpr std::uint64_t kReach = 32;
 
 /// The newest trigger whose edge lies less than within(trigger) from @p fired.
@@ -38,7 +37,7 @@ std::optional<std::uint64_t> Association::edgeMaybeNear(rt::Timestamp fired, rt:
 
 std::optional<std::uint64_t> Association::triggerOf(rt::Timestamp arrival,
                                                     const EdgeBoard& edges) const RT_SAFE {
-  // Exactly between two edges is nobody's.
+  // Exactly between two edges it belongs to neither.
   return edgeNear(arrival - camera_delay_, period_ / 2, edges);
 }
 

@@ -12,8 +12,8 @@ namespace appliance {
 /// Whether the trigger line starts a camera's exposures.
 enum class CameraPace : std::uint8_t { kTriggered, kFreeRunning };
 
-/// Which trigger edge an instant belongs to. What a frame's instants are worth as evidence is
-/// FrameNamer's business.
+/// Which trigger edge an instant belongs to. TriggerMatcher knows how reliable a frame's instants
+/// are.
 ///
 /// Threads  Any, against a board that is being written.
 /// RT       Bounded: looks at the few newest edges.
@@ -28,8 +28,8 @@ class Association {
   [[nodiscard]] CameraPace pace() const RT_SAFE { return pace_; }
   [[nodiscard]] rt::Nanoseconds period() const RT_SAFE { return period_; }
 
-  /// The trigger whose frames' leaders arrive nearest to @p arrival; nothing where that is half
-  /// a period away or more.
+  /// The trigger whose frames' leaders arrive nearest to @p arrival; nothing if that is half a
+  /// period away or more.
   [[nodiscard]] std::optional<std::uint64_t> triggerOf(rt::Timestamp arrival,
                                                        const EdgeBoard& edges) const RT_SAFE;
 
@@ -44,8 +44,8 @@ class Association {
                                                                   rt::Nanoseconds within,
                                                                   const EdgeBoard& edges) RT_SAFE;
 
-  /// Whether a leader of the edge @p edge can have been seen at @p arrival: not half a period
-  /// before it was due. However late is possible: machines are busy.
+  /// Whether a leader of the edge @p edge can have been read at @p arrival: it cannot come half a
+  /// period before it is due. It can be late by any time, because machines are busy.
   [[nodiscard]] bool canArrive(rt::Timestamp edge, rt::Timestamp arrival) const RT_SAFE {
     return 2 * (edge + camera_delay_ - arrival) < period_;
   }

@@ -26,7 +26,7 @@ Association associationOf(const Config& config) {
           microseconds(commonDelay_us(config.cameras) + config.cameras.exposure_us), pace};
 }
 
-CameraDoor doorOf(const Config& config, const RigCamera& camera, std::uint32_t index) {
+CameraAccess accessOf(const Config& config, const RigCamera& camera, std::uint32_t index) {
   const std::string& backend = config.cameras.backend;
   const hal::CameraProfile profile = profileOf(config, camera, index);
   return {
@@ -53,7 +53,7 @@ CameraArray::CameraArray(const Config& config, const Rig& rig, FrameHistory& his
         i, associationOf(config), history.camera(i), board,
         trace != nullptr ? &trace->addProducer("camera" + std::to_string(i + 1)) : nullptr));
     supervisors_.push_back(std::make_unique<CameraSupervisor>(
-        doorOf(config, rig.cameras[i], i), *collectors_[i], history.camera(i), board.edges));
+        accessOf(config, rig.cameras[i], i), *collectors_[i], history.camera(i), board.edges));
   }
 }
 

@@ -29,9 +29,9 @@ class CameraArray {
   CameraArray(const Config& config, const Rig& rig, FrameHistory& history, CaptureBoard& board,
               TraceWriter* trace);
 
-  /// All at once; returns when every camera streams or is known not to. One that does not is named
-  /// in statuses() and tried again for as long as it takes.
-  /// Errors: no thread could be made; those that were are stopped by stop().
+  /// Starts all together; returns when every camera streams or is known not to. One that does not
+  /// is named in statuses() and tried again for as long as it takes. Errors: no thread could be
+  /// made; those that were are stopped by stop().
   [[nodiscard]] std::expected<void, std::string> start();
   void stop();
 

@@ -18,7 +18,7 @@ std::uint32_t judgedSince(const CameraFacts& facts, std::uint64_t first) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>({since, facts.judged, kWindow}));
 }
 
-/// Of the newest @p triggers judged, how many brought no frame.
+/// How many of the newest @p triggers judged have no frame.
 std::uint32_t missingOf(const CameraFacts& facts, std::uint32_t triggers) {
   const std::uint64_t window = (std::uint64_t{1} << triggers) - 1;  // kWindow is below 64
   return triggers - static_cast<std::uint32_t>(std::popcount(facts.brought & window));
@@ -83,9 +83,9 @@ CameraAction CameraMachine::search(rt::Timestamp now, const CameraFacts& facts) 
   return now < next_probe_ ? CameraAction::kNone : begin(CameraAction::kProbe);
 }
 
-/// Every trigger of the proof must have brought one frame, none more. Frames that came beside are
-/// counted for as many triggers as the proof has, then anew: the first frames of a stream may be
-/// looked at too late to be told apart, and say nothing of the following ones.
+/// Every trigger of the proof must have exactly one frame. Extra frames are counted for as many
+/// triggers as the proof has, then from zero again: the first frames of a stream may be read too
+/// late to be matched, which says nothing about the following ones.
 void CameraMachine::prove(const CameraFacts& facts) {
   const std::uint32_t judged = judgedSince(facts, expected_from_);
   const std::uint32_t proof = std::min(kProofTriggers, facts.judged);
@@ -124,7 +124,7 @@ void CameraMachine::judge(const CameraFacts& facts) {
   mark_ = facts;
 }
 
-/// Since the mark. One trigger in eight is a trouble; less is told as lost frames.
+/// Since the mark. One trigger in eight is a trouble; less is reported as lost frames.
 CameraTrouble CameraMachine::troubleIn(const CameraFacts& facts, std::uint64_t missing) const {
   const std::uint64_t many = std::max<std::uint64_t>(judgedSince(facts, expected_from_) / 8, 2);
   if (facts.damaged - mark_.damaged >= many) return CameraTrouble::kDamaged;
@@ -209,7 +209,7 @@ void CameraMachine::started(rt::Timestamp now, const std::string& refused,
 
 void CameraMachine::closed(rt::Timestamp now) {
   phase_ = Phase::kClosed;
-  // A start that was refused is not repeated at once; any other camera is asked at once.
+  // A start that was refused is repeated later; any other camera is asked immediately.
   next_probe_ = health_.trouble == CameraTrouble::kRefuses ? next_try_ : now;
   streams_ = false;
 }

@@ -9,35 +9,37 @@
 
 namespace appliance {
 
-/// What is to be done next with one camera.
+/// What to do next with one camera.
 enum class CameraAction : std::uint8_t {
   kNone,
   kProbe,  ///< ask its address; then probed()
   kOpen,   ///< open it and push its whole profile; then opened()
   kStart,  ///< stream into the history; then started()
-  kClose,  ///< stop the stream and let the camera go; then closed()
+  kClose,  ///< stop the stream and release the camera; then closed()
 };
 
 /// What the history says of one camera's frames.
 struct CameraFacts {
-  std::uint64_t fired = 0;    ///< newest trigger fired; 0: none yet
-  std::uint64_t stored = 0;   ///< newest trigger with a stored frame of this camera
-  std::uint64_t brought = 0;  ///< bit i: trigger fired - kTriggersOnTheWire - i has its frame
-  std::uint32_t judged = 0;   ///< how many of these bits say something, 64 at most
+  std::uint64_t fired = 0;   ///< newest trigger fired; 0: none yet
+  std::uint64_t stored = 0;  ///< newest trigger with a stored frame of this camera
+  std::uint64_t brought =
+      0;                     ///< bit i: trigger fired - kTriggersOnTheWire - i has its frame stored
+  std::uint32_t judged = 0;  ///< how many of these bits say something, 64 at most
   std::uint64_t damaged = 0;  ///< frames that came incomplete or in another size, so far
   std::uint64_t extra = 0;    ///< frames that came and belonged to no trigger, so far
 };
 
-/// One camera's life: found, opened, streaming, lost, taken back. Pure: told what happened and
-/// when, it says what to do next.
+/// One camera's life: found, opened, streaming, lost, recovered. Pure: it is given what happened
+/// and when, and says what to do next.
 ///
-/// A camera counts as lost when kLostAfterTriggers triggers brought no frame; without triggers
-/// nothing is lost. A silent camera is asked over its address before anything is done to it:
-/// talking to a dead one through an open connection takes seconds, and one that was away for a
-/// moment goes on by itself. It is let go only when it answers: if it is free (it forgot us: opened
-/// again), held by a stranger, or still ours and yet silent. After a start, as many triggers as
-/// kProofTriggers in a row must each bring one frame; only then it streams. If they do not, the
-/// profile is pushed again, twice, and then its frames are taken as they come and it is told.
+/// A camera counts as lost when kLostAfterTriggers triggers passed without a frame; without
+/// triggers nothing is lost. A silent camera is first asked over its address, because talking to a
+/// dead one through an open connection takes seconds, and one that was away for a moment continues
+/// by itself. It is closed only if it answers and is free (it forgot us: it is opened again), is
+/// held by another program, or is ours but silent. After a start, kProofTriggers consecutive
+/// triggers must each deliver exactly one frame; only then it streams. Otherwise the profile is
+/// pushed again, up to kPushes times; after that its frames are accepted as they come, and it
+/// counts as degraded.
 ///
 /// Threads  One.
 class CameraMachine {
@@ -53,7 +55,7 @@ class CameraMachine {
   /// After a start, or an answer, the first frame may take this many triggers.
   static constexpr std::uint64_t kFirstFrameWithin = 20;
 
-  /// What to do now; after an action its outcome must be told before another comes.
+  /// What to do now. After an action its outcome must be reported before the next call.
   [[nodiscard]] CameraAction step(rt::Timestamp now, const CameraFacts& facts);
 
   void probed(rt::Timestamp now, const hal::CameraProbe& probe);

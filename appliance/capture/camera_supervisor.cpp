@@ -62,8 +62,8 @@ std::vector<std::string> CameraSupervisor::remarks() const {
 std::vector<std::string> CameraSupervisor::remarksNow() {
   if (!camera_) return {};
   std::vector<std::string> remarks = camera_->remarks();
-  if (large_packets_.vanish(camera_->statistics())) {
-    remarks.push_back(door_.name + ": " + LargePacketWatch::kReason);
+  if (large_packet_loss_.update(camera_->statistics())) {
+    remarks.push_back(access_.name + ": " + LargePacketLoss::kReason);
   }
   return remarks;
 }
@@ -96,12 +96,12 @@ void CameraSupervisor::carryOut(CameraAction action) {
     case CameraAction::kNone:
       break;
     case CameraAction::kProbe: {
-      const hal::CameraProbe probe = door_.probe(kAnswerTimeout);
+      const hal::CameraProbe probe = access_.probe(kAnswerTimeout);
       machine_.probed(rt::now(), probe);
       break;
     }
     case CameraAction::kOpen: {
-      auto opened = door_.open();
+      auto opened = access_.open();
       if (opened) camera_ = std::move(*opened);
       machine_.opened(rt::now(), opened ? "" : opened.error());
       break;

@@ -16,7 +16,7 @@
 #include "appliance/capture/collector.h"
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
-#include "appliance/capture/large_packets.h"
+#include "appliance/capture/large_packet_loss.h"
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "rt/thread.h"
@@ -24,19 +24,19 @@
 namespace appliance {
 
 /// How one camera is reached.
-struct CameraDoor {
+struct CameraAccess {
   /// Waits no longer than the given time.
   std::function<hal::CameraProbe(rt::Nanoseconds)> probe;
-  /// May take seconds where the camera dies meanwhile.
+  /// May take seconds if the camera dies meanwhile.
   std::function<std::expected<std::unique_ptr<hal::Camera>, std::string>()> open;
   std::string name;                 ///< for remarks
   std::uint32_t frame_packets = 0;  ///< on the wire, leader and trailer included
 };
 
 /// Keeps one camera of the rig streaming, however often it dies: carries out what its
-/// CameraMachine decides, on a thread of its own, so that a dead camera's long silences delay
-/// nobody. The slots that the camera was filling when it died are the ones it fills first when it
-/// is back.
+/// CameraMachine decides, on a thread of its own, so that a dead camera's long silences delay no
+/// other camera. The slots that the camera was filling when it died are the ones it fills first
+/// when it is back.
 ///
 /// Threads  start(), requestStop(), stop(): the owner. health(): any. The camera, and the collector
 ///          while the camera is stopped, belong to its thread, `watchNN`.
@@ -44,13 +44,13 @@ struct CameraDoor {
 /// Memory   Everything given outlives the supervisor.
 class CameraSupervisor {
  public:
-  CameraSupervisor(CameraDoor door, Collector& collector, CameraFrames& frames,
+  CameraSupervisor(CameraAccess access, Collector& collector, CameraFrames& frames,
                    const EdgeBoard& edges)
-      : door_(std::move(door)),
+      : access_(std::move(access)),
         collector_(collector),
         frames_(frames),
         edges_(edges),
-        large_packets_(door_.frame_packets) {}
+        large_packet_loss_(access_.frame_packets) {}
   ~CameraSupervisor() { stop(); }
   CameraSupervisor(const CameraSupervisor&) = delete;
   CameraSupervisor& operator=(const CameraSupervisor&) = delete;
@@ -78,14 +78,14 @@ class CameraSupervisor {
   [[nodiscard]] std::vector<std::string> remarksNow();
   [[nodiscard]] CameraFacts facts() const;
 
-  CameraDoor door_;
+  CameraAccess access_;
   Collector& collector_;
   CameraFrames& frames_;
   const EdgeBoard& edges_;
 
   CameraMachine machine_;                // the thread's
   std::unique_ptr<hal::Camera> camera_;  // likewise
-  LargePacketWatch large_packets_;       // likewise
+  LargePacketLoss large_packet_loss_;    // likewise
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

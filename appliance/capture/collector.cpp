@@ -41,20 +41,20 @@ std::uint64_t Collector::triggerOf(const hal::FrameArrival& arrival) RT_SAFE {
     case hal::FrameStatus::kWrongSize:
       count(wrong_size_);
       return 0;
-    case hal::FrameStatus::kAborted:  // the end of a stream cuts a frame short: nobody's loss
+    case hal::FrameStatus::kAborted:  // the end of a stream cuts a frame short: that is no loss
       return 0;
   }
-  const FrameName name = namer_.name({.arrival = arrival.first_packet,
-                                      .camera_clock = arrival.camera_clock,
-                                      .frame_id = arrival.frame_id},
-                                     board_.edges);
+  const MatchedTrigger name = matcher_.match({.arrival = arrival.first_packet,
+                                              .camera_clock = arrival.camera_clock,
+                                              .frame_id = arrival.frame_id},
+                                             board_.edges);
   switch (name.why) {
-    case FrameName::Why::kNamed:
+    case MatchedTrigger::Why::kMatched:
       break;
-    case FrameName::Why::kNoEdge:
+    case MatchedTrigger::Why::kNoEdge:
       count(no_edge_);
       return 0;
-    case FrameName::Why::kUnsettled:
+    case MatchedTrigger::Why::kUnsettled:
       count(unsettled_);
       return 0;
   }

@@ -6,7 +6,7 @@
 #include "appliance/capture/association.h"
 #include "appliance/capture/capture_board.h"
 #include "appliance/capture/frame_history.h"
-#include "appliance/capture/frame_namer.h"
+#include "appliance/capture/trigger_matcher.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/camera.h"
 #include "rt/annotations.h"
@@ -25,7 +25,7 @@ struct CollectorCounts {
   std::uint64_t wrong_size = 0;    ///< another size or format than the profile says
   std::uint64_t no_edge = 0;       ///< taken at no trigger's time
   std::uint64_t repeated = 0;      ///< its trigger has a frame, or a later one has
-  std::uint64_t unsettled = 0;     ///< its trigger is not certain; see FrameNamer
+  std::uint64_t unsettled = 0;     ///< its trigger is not certain; see TriggerMatcher
   std::uint64_t unattributed = 0;  ///< the sum of the last three
   rt::Timestamp last_stored;
 
@@ -44,14 +44,14 @@ class Collector final : public hal::FrameSink {
  public:
   Collector(std::uint32_t camera, Association association, CameraFrames& frames,
             CaptureBoard& board, TraceProducer* trace)
-      : camera_(camera), namer_(association), frames_(frames), board_(board), trace_(trace) {}
+      : camera_(camera), matcher_(association), frames_(frames), board_(board), trace_(trace) {}
 
   [[nodiscard]] std::uint32_t onFrame(const hal::FrameArrival& arrival) RT_SAFE override;
 
   /// A new stream begins: its camera may have been switched off, its clock set back.
   /// Threads  Whoever starts the camera, while it is stopped.
   void restart() {
-    namer_.restart();
+    matcher_.restart();
     restarted_ = true;
   }
 
@@ -63,7 +63,7 @@ class Collector final : public hal::FrameSink {
                                     const hal::FrameArrival& arrival) RT_SAFE;
 
   const std::uint32_t camera_;
-  FrameNamer namer_;        // the receive thread's
+  TriggerMatcher matcher_;  // the receive thread's
   bool restarted_ = false;  // likewise; since the last stored frame
   CameraFrames& frames_;
   CaptureBoard& board_;

@@ -9,7 +9,7 @@
 
 namespace appliance {
 
-/// The last trigger edges, for whoever finds the trigger of a frame. The trigger loop reads the
+/// The last trigger edges, for all who look for the trigger of a frame. The trigger loop reads the
 /// clock before and after it drives the line: the edge lies somewhere between, and the board has
 /// the middle and what it may be off.
 ///

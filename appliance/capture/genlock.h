@@ -25,8 +25,8 @@ struct GenlockInput {
 ///
 /// and the next one n vblanks later, n = round(period / vblank period). Deadlines are moved by at
 /// most kMostSlew of a period per trigger, plus what the two rates differ (kMostMistuned at most):
-/// cameras need that much headroom. Lead follows its parts slowly and not at once, so that a lock
-/// is never lost to them. Mains frequency has no say: exposure and gain handle lamps.
+/// cameras need that much headroom. Lead follows its parts slowly, so that a lock is never lost to
+/// them. The mains frequency plays no part: exposure and gain handle lamps.
 ///
 /// Threads  One: the trigger loop's. Pure: time is an argument.
 /// RT       RT safe.

@@ -6,7 +6,7 @@
 
 namespace appliance {
 
-/// Where the render thread and the trigger loop tell each other what the genlock needs and did.
+/// What the render thread reports to the genlock, and what the genlock reports to everyone.
 ///
 /// Threads  input: the render thread publishes, the trigger loop takes. status: the trigger loop
 ///          stores, any thread below it in priority loads.

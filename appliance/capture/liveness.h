@@ -6,7 +6,7 @@
 
 namespace appliance {
 
-/// A camera counts as lost when this many triggers in a row brought no frame.
+/// A camera counts as lost after so many consecutive triggers without a frame.
 inline constexpr std::uint64_t kLostAfterTriggers = 3;
 /// Triggers whose frames may still be on the wire: a transfer takes up to a whole period.
 inline constexpr std::uint64_t kTriggersOnTheWire = 2;

@@ -27,16 +27,16 @@ struct LoopbackReading {
 
 /// Sends one short test pulse and judges what comes back. The line is inactive afterwards.
 ///
-/// Threads  The owner, while nobody else drives the line and no camera takes frames.
+/// Threads  The owner, while no other thread drives the line and no camera takes frames.
 /// Errors   One line: polarity, wiring, or a device that is gone.
 [[nodiscard]] std::expected<void, std::string> checkLoopback(hal::TriggerLine& line,
                                                              hal::EdgeInput& input);
 
 /// Collects the edges that come back while the cameras are fired, and records for each which
-/// trigger it was and when it was seen: from there the report has the box's own edge delay.
+/// trigger it was and when it was seen: the report computes the box's own edge delay from that.
 ///
 /// Threads  run(): the `loopback` thread.
-/// RT       Not RT safe: the kernel stamps the edges, so nobody needs to be there in time.
+/// RT       Not RT safe: the kernel stamps the edges, so they may be read late.
 class LoopbackLoop {
  public:
   LoopbackLoop(rt::Nanoseconds period, hal::EdgeInput& input, const EdgeBoard& edges,

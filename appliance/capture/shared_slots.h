@@ -29,7 +29,7 @@ struct SlotBlock {
 ///
 /// Threads  create(): a SCHED_OTHER thread. part(): any.
 /// RT       part() is RT safe.
-/// Errors   create(): one line; the slots serve as before, but nobody can import them.
+/// Errors   create(): one line; the slots serve as before, but no GPU can import them.
 class SharedSlots {
  public:
   /// @p slot_bytes: whole pages each, from the arena's beginning, one after the other.

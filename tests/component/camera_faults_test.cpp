@@ -70,7 +70,7 @@ class Receiver {
       collectors_.push_back(std::make_unique<appliance::Collector>(
           i, appliance::Association{kPeriod, 1ms}, history_->camera(i), board_, nullptr));
       supervisors_.push_back(std::make_unique<appliance::CameraSupervisor>(
-          appliance::CameraDoor{
+          appliance::CameraAccess{
               .probe =
                   [i](rt::Nanoseconds timeout) {
                     return hal::aravis::probeCamera(addressOf(i), timeout);

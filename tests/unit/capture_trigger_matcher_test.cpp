@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "appliance/capture/frame_namer.h"
+#include "appliance/capture/trigger_matcher.h"
 
 namespace {
 
@@ -10,15 +10,15 @@ using namespace std::chrono_literals;
 using appliance::Association;
 using appliance::CameraPace;
 using appliance::EdgeBoard;
-using appliance::FrameName;
-using appliance::FrameNamer;
-using Why = FrameName::Why;
+using appliance::MatchedTrigger;
+using appliance::TriggerMatcher;
+using Why = MatchedTrigger::Why;
 
 constexpr rt::Nanoseconds kPeriod = 25ms;
 constexpr rt::Nanoseconds kDelay = 1ms;
 
 /// A trigger every 25 ms and a camera that follows, on a machine that looks some time after.
-class FrameNamerTest : public testing::Test {
+class TriggerMatcherTest : public testing::Test {
  protected:
   static rt::Timestamp edge(std::uint64_t trigger) {
     return rt::fromNs(5'000'000'000'000) + static_cast<std::int64_t>(trigger) * kPeriod;
@@ -30,13 +30,13 @@ class FrameNamerTest : public testing::Test {
     clock_ += kPeriod + drift_;
   }
   /// The camera sends what it took at @p clock, looked at @p late after it could arrive.
-  FrameName send(rt::Nanoseconds clock, rt::Nanoseconds late) {
-    return namer_.name({.arrival = edge(trigger_) + kDelay + late,
-                        .camera_clock = has_clock_ ? clock : 0ns,
-                        .frame_id = ++frame_id_},
-                       *edges_);
+  MatchedTrigger send(rt::Nanoseconds clock, rt::Nanoseconds late) {
+    return matcher_.match({.arrival = edge(trigger_) + kDelay + late,
+                           .camera_clock = has_clock_ ? clock : 0ns,
+                           .frame_id = ++frame_id_},
+                          *edges_);
   }
-  FrameName next(rt::Nanoseconds late = 100us) {
+  MatchedTrigger next(rt::Nanoseconds late = 100us) {
     fire();
     return send(clock_, late);
   }
@@ -47,7 +47,7 @@ class FrameNamerTest : public testing::Test {
   }
 
   std::unique_ptr<EdgeBoard> edges_ = std::make_unique<EdgeBoard>();
-  FrameNamer namer_{Association{kPeriod, kDelay}};
+  TriggerMatcher matcher_{Association{kPeriod, kDelay}};
   bool has_clock_ = true;
   rt::Nanoseconds clock_ = 1234s;  // the camera was switched on some time ago
   rt::Nanoseconds drift_{0};       // of its clock, per period
@@ -55,11 +55,11 @@ class FrameNamerTest : public testing::Test {
   std::uint64_t frame_id_ = 500;
 };
 
-TEST_F(FrameNamerTest, HasNoDoubtFromTheFirstTriggerOn) {
+TEST_F(TriggerMatcherTest, HasNoDoubtFromTheFirstTriggerOn) {
   for (std::uint64_t trigger = 1; trigger < 20; ++trigger) EXPECT_EQ(named(), trigger);
 }
 
-TEST_F(FrameNamerTest, HasNoDoubtOfTheFirstTriggerWhenItIsAskedAfterTheSecond) {
+TEST_F(TriggerMatcherTest, HasNoDoubtOfTheFirstTriggerWhenItIsAskedAfterTheSecond) {
   fire();
   const rt::Nanoseconds first = clock_;
   fire();  // the first frame's leader was seen in time, its end comes only now
@@ -67,20 +67,20 @@ TEST_F(FrameNamerTest, HasNoDoubtOfTheFirstTriggerWhenItIsAskedAfterTheSecond) {
   EXPECT_EQ(send(clock_, 100us).trigger, 2U);
 }
 
-TEST_F(FrameNamerTest, DoubtsAFirstFrameThatTheSecondTriggerCanHaveBrought) {
+TEST_F(TriggerMatcherTest, DoubtsAFirstFrameThatTheSecondTriggerCanHaveBrought) {
   fire();
   fire();
   EXPECT_EQ(send(clock_, 13ms - kPeriod).why, Why::kUnsettled);
 }
 
-TEST_F(FrameNamerTest, NeedsThreeFramesOfACameraThatJoinsLater) {
+TEST_F(TriggerMatcherTest, NeedsThreeFramesOfACameraThatJoinsLater) {
   for (int i = 0; i < 10; ++i) fire();
   EXPECT_EQ(next().why, Why::kUnsettled);
   EXPECT_EQ(next().why, Why::kUnsettled);
   EXPECT_EQ(named(), 13U);
 }
 
-TEST_F(FrameNamerTest, IsNotFooledByAFirstFrameThatCameAPeriodLate) {
+TEST_F(TriggerMatcherTest, IsNotFooledByAFirstFrameThatCameAPeriodLate) {
   for (int i = 0; i < 10; ++i) fire();
   const rt::Nanoseconds first = clock_;
   fire();
@@ -90,7 +90,7 @@ TEST_F(FrameNamerTest, IsNotFooledByAFirstFrameThatCameAPeriodLate) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, NamesAFrameHoweverLateTheMachineLooks) {
+TEST_F(TriggerMatcherTest, NamesAFrameHoweverLateTheMachineLooks) {
   settle();
   for (const rt::Nanoseconds late : {300'000ns, rt::Nanoseconds(12ms), rt::Nanoseconds(13ms),
                                      rt::Nanoseconds(25ms), rt::Nanoseconds(400ms)}) {
@@ -98,7 +98,7 @@ TEST_F(FrameNamerTest, NamesAFrameHoweverLateTheMachineLooks) {
   }
 }
 
-TEST_F(FrameNamerTest, NamesALateLeaderByItsClockAmongFramesInTime) {
+TEST_F(TriggerMatcherTest, NamesALateLeaderByItsClockAmongFramesInTime) {
   settle();
   fire();
   const rt::Nanoseconds late_clock = clock_;
@@ -108,7 +108,7 @@ TEST_F(FrameNamerTest, NamesALateLeaderByItsClockAmongFramesInTime) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, FollowsACameraThatIgnoresTriggers) {
+TEST_F(TriggerMatcherTest, FollowsACameraThatIgnoresTriggers) {
   settle();
   fire();
   EXPECT_EQ(named(), trigger_);
@@ -118,7 +118,7 @@ TEST_F(FrameNamerTest, FollowsACameraThatIgnoresTriggers) {
   }
 }
 
-TEST_F(FrameNamerTest, DropsAFrameThatNothingAskedForAndNoOther) {
+TEST_F(TriggerMatcherTest, DropsAFrameThatNothingAskedForAndNoOther) {
   settle();
   for (const rt::Nanoseconds after : {5ms, 11ms, 14ms, 23ms}) {
     ASSERT_EQ(named(), trigger_);
@@ -127,7 +127,7 @@ TEST_F(FrameNamerTest, DropsAFrameThatNothingAskedForAndNoOther) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, FollowsAClockThatDrifts) {
+TEST_F(TriggerMatcherTest, FollowsAClockThatDrifts) {
   for (const rt::Nanoseconds drift : {2500ns, -2500ns}) {  // 100 ppm either way
     drift_ = drift;
     for (int i = 0; i < 4000; ++i) {
@@ -136,7 +136,7 @@ TEST_F(FrameNamerTest, FollowsAClockThatDrifts) {
   }
 }
 
-TEST_F(FrameNamerTest, SettlesAnewWithinThreeFramesOfARestartedClock) {
+TEST_F(TriggerMatcherTest, SettlesAnewWithinThreeFramesOfARestartedClock) {
   settle();
   clock_ = 0s;
   frame_id_ = 0;
@@ -146,7 +146,7 @@ TEST_F(FrameNamerTest, SettlesAnewWithinThreeFramesOfARestartedClock) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, IsNotFooledByAClockThatWasSetByWholePeriods) {
+TEST_F(TriggerMatcherTest, IsNotFooledByAClockThatWasSetByWholePeriods) {
   for (const rt::Nanoseconds step : {-kPeriod, kPeriod, -3 * kPeriod, 3 * kPeriod}) {
     settle();
     clock_ += step;
@@ -160,7 +160,7 @@ TEST_F(FrameNamerTest, IsNotFooledByAClockThatWasSetByWholePeriods) {
   }
 }
 
-TEST_F(FrameNamerTest, LosesTwoFramesToIdsThatJump) {
+TEST_F(TriggerMatcherTest, LosesTwoFramesToIdsThatJump) {
   settle();
   frame_id_ += 40'000;
   EXPECT_EQ(next().why, Why::kUnsettled);
@@ -168,7 +168,7 @@ TEST_F(FrameNamerTest, LosesTwoFramesToIdsThatJump) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, LosesNothingToFramesThatWereLostOnTheWire) {
+TEST_F(TriggerMatcherTest, LosesNothingToFramesThatWereLostOnTheWire) {
   settle();
   for (int i = 0; i < 4; ++i) {
     fire();
@@ -177,9 +177,9 @@ TEST_F(FrameNamerTest, LosesNothingToFramesThatWereLostOnTheWire) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, GivesUpAWrongClockWhenAFrameComesBeforeItsTrigger) {
+TEST_F(TriggerMatcherTest, GivesUpAWrongClockWhenAFrameComesBeforeItsTrigger) {
   for (int i = 0; i < 10; ++i) fire();
-  FrameName last;
+  MatchedTrigger last;
   for (int i = 0; i < 3; ++i) {  // all that it sees comes a period late
     const rt::Nanoseconds before = clock_;
     fire();
@@ -192,7 +192,7 @@ TEST_F(FrameNamerTest, GivesUpAWrongClockWhenAFrameComesBeforeItsTrigger) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, ForgetsTheClockInALongSilence) {
+TEST_F(TriggerMatcherTest, ForgetsTheClockInALongSilence) {
   settle();
   for (int i = 0; i < 10'000; ++i) fire();  // 250 s, in which 100 ppm make one period
   clock_ += kPeriod;
@@ -201,22 +201,22 @@ TEST_F(FrameNamerTest, ForgetsTheClockInALongSilence) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, StartsAnewWhenTold) {
+TEST_F(TriggerMatcherTest, StartsAnewWhenTold) {
   settle();
-  namer_.restart();
+  matcher_.restart();
   EXPECT_EQ(next().why, Why::kUnsettled);
   EXPECT_EQ(next().why, Why::kUnsettled);
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, NamesByArrivalWhereThereIsNoClock) {
+TEST_F(TriggerMatcherTest, NamesByArrivalWhereThereIsNoClock) {
   has_clock_ = false;
   for (int i = 0; i < 100; ++i) ASSERT_EQ(named(i % 2 == 0 ? 100us : 12ms), trigger_);
   EXPECT_EQ(next(13ms).why, Why::kNoEdge);
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, DropsALateLeaderWithoutAClockInsteadOfGuessing) {
+TEST_F(TriggerMatcherTest, DropsALateLeaderWithoutAClockInsteadOfGuessing) {
   has_clock_ = false;
   settle();
   fire();
@@ -226,7 +226,7 @@ TEST_F(FrameNamerTest, DropsALateLeaderWithoutAClockInsteadOfGuessing) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, RepairsASlipWithoutAClockWithinThreeFrames) {
+TEST_F(TriggerMatcherTest, RepairsASlipWithoutAClockWithinThreeFrames) {
   has_clock_ = false;
   settle();
   fire();  // ignored by the camera
@@ -235,8 +235,8 @@ TEST_F(FrameNamerTest, RepairsASlipWithoutAClockWithinThreeFrames) {
   EXPECT_EQ(named(), trigger_);
 }
 
-TEST_F(FrameNamerTest, TakesTheNearestTriggerOfACameraThatRunsFree) {
-  namer_ = FrameNamer(Association{kPeriod, kDelay, CameraPace::kFreeRunning});
+TEST_F(TriggerMatcherTest, TakesTheNearestTriggerOfACameraThatRunsFree) {
+  matcher_ = TriggerMatcher(Association{kPeriod, kDelay, CameraPace::kFreeRunning});
   fire();
   for (int i = 0; i < 100; ++i) {
     fire();
@@ -244,7 +244,7 @@ TEST_F(FrameNamerTest, TakesTheNearestTriggerOfACameraThatRunsFree) {
   }
 }
 
-TEST_F(FrameNamerTest, NamesAFrameWhoseTriggersEdgeIsNotKnownWell) {
+TEST_F(TriggerMatcherTest, NamesAFrameWhoseTriggersEdgeIsNotKnownWell) {
   settle();
   for (int i = 0; i < 5; ++i) {
     // The trigger loop was stopped for 6 ms while it drove the line: the edge left at once.
@@ -257,29 +257,29 @@ TEST_F(FrameNamerTest, NamesAFrameWhoseTriggersEdgeIsNotKnownWell) {
 }
 
 /// Names the frames of a camera that joins at trigger 5, at any rate.
-class FrameNamerAtAnyRate : public testing::TestWithParam<rt::Nanoseconds> {};
+class TriggerMatcherAtAnyRate : public testing::TestWithParam<rt::Nanoseconds> {};
 
-TEST_P(FrameNamerAtAnyRate, NamesEveryFrameOnceItIsSettled) {
+TEST_P(TriggerMatcherAtAnyRate, NamesEveryFrameOnceItIsSettled) {
   const rt::Nanoseconds period = GetParam();
   const rt::Nanoseconds delay = period / 10;
   const auto edges = std::make_unique<EdgeBoard>();
-  FrameNamer namer{Association{period, delay}};
+  TriggerMatcher matcher{Association{period, delay}};
   for (std::uint64_t trigger = 1; trigger <= 100; ++trigger) {
     const rt::Timestamp edge = rt::fromNs(5'000'000'000'000) + static_cast<int>(trigger) * period;
     edges->post(trigger, edge);
     if (trigger < 5) continue;
     const rt::Nanoseconds late = period / 20 * static_cast<int>(trigger % 7);
-    const FrameName name = namer.name({.arrival = edge + delay + late,
-                                       .camera_clock = edge - rt::fromNs(4'000'000'000'000),
-                                       .frame_id = trigger},
-                                      *edges);
-    if (trigger >= 5 + FrameNamer::kAgreeing - 1) {
+    const MatchedTrigger name = matcher.match({.arrival = edge + delay + late,
+                                               .camera_clock = edge - rt::fromNs(4'000'000'000'000),
+                                               .frame_id = trigger},
+                                              *edges);
+    if (trigger >= 5 + TriggerMatcher::kAgreeing - 1) {
       EXPECT_EQ(name.trigger, trigger);
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rates, FrameNamerAtAnyRate,
+INSTANTIATE_TEST_SUITE_P(Rates, TriggerMatcherAtAnyRate,
                          testing::Values(10s, 5s, 1s, 25ms, 10ms, 2ms, 1ms));
 
 }  // namespace

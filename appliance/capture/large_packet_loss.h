@@ -10,15 +10,15 @@ namespace appliance {
 /// MTU, the payload is not. That is what a camera looks like whose MTU was lowered on the way
 /// while it ran; ordinary loss leaves most packets, a dead camera leaves no frame at all.
 ///
-/// Pure: told the counts of Camera::statistics() now and then.
-class LargePacketWatch {
+/// Pure: it is given the counts of Camera::statistics() now and then.
+class LargePacketLoss {
  public:
   /// @p packets: of a frame, leader and trailer included.
-  explicit LargePacketWatch(std::uint32_t packets) : packets_(packets) {}
+  explicit LargePacketLoss(std::uint32_t packets) : packets_(packets) {}
 
   /// Whether, by now, every large packet vanishes: kFrames frames without one, and no complete one
   /// since. @p counts may start again from 0, as after Camera::start().
-  [[nodiscard]] bool vanish(const hal::CameraStatistics& counts) {
+  [[nodiscard]] bool update(const hal::CameraStatistics& counts) {
     if (counts.frames_complete < last_.frames_complete ||
         counts.frames_incomplete < last_.frames_incomplete) {
       last_ = {};

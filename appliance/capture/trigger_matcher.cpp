@@ -1,4 +1,4 @@
-#include "appliance/capture/frame_namer.h"
+#include "appliance/capture/trigger_matcher.h"
 
 namespace appliance {
 namespace {
@@ -9,44 +9,46 @@ bool hasClock(const FrameEvidence& frame) RT_SAFE {
 
 }  // namespace
 
-std::optional<std::uint64_t> FrameNamer::clockFits(const Belief& belief, const FrameEvidence& frame,
-                                                   const EdgeBoard& edges) const RT_SAFE {
+std::optional<std::uint64_t> TriggerMatcher::clockFits(const Belief& belief,
+                                                       const FrameEvidence& frame,
+                                                       const EdgeBoard& edges) const RT_SAFE {
   const auto trigger =
       Association::edgeMaybeNear(belief.clock_zero + frame.camera_clock, tolerance_, edges);
   if (!trigger || *trigger <= belief.trigger) return std::nullopt;
   if (!association_.canArrive(edges.edge(*trigger), frame.arrival)) return std::nullopt;
-  // A camera that counts from one again was started anew: its clock too may be another one.
+  // A camera that counts from one again was restarted: its clock may be another one, too.
   if (frame.frame_id <= belief.frame_id) return std::nullopt;
   // Every frame has a trigger of its own.
   if (*trigger - belief.trigger < frame.frame_id - belief.frame_id) return std::nullopt;
   return trigger;
 }
 
-std::optional<std::uint64_t> FrameNamer::countFits(const Belief& belief, const FrameEvidence& frame,
-                                                   const EdgeBoard& edges) const RT_SAFE {
+std::optional<std::uint64_t> TriggerMatcher::countFits(const Belief& belief,
+                                                       const FrameEvidence& frame,
+                                                       const EdgeBoard& edges) const RT_SAFE {
   const auto trigger = association_.triggerOf(frame.arrival, edges);
   if (!trigger || *trigger <= belief.trigger) return std::nullopt;
   if (*trigger - belief.trigger != frame.frame_id - belief.frame_id) return std::nullopt;
   return trigger;
 }
 
-std::optional<std::uint64_t> FrameNamer::fits(const Belief& belief, const FrameEvidence& frame,
-                                              const EdgeBoard& edges) const RT_SAFE {
+std::optional<std::uint64_t> TriggerMatcher::fits(const Belief& belief, const FrameEvidence& frame,
+                                                  const EdgeBoard& edges) const RT_SAFE {
   const bool forgotten = frame.arrival - belief.arrival > forgotten_after_;
   if (belief.agreeing == 0 || forgotten) return std::nullopt;
   return hasClock(frame) ? clockFits(belief, frame, edges) : countFits(belief, frame, edges);
 }
 
-FrameName FrameNamer::name(const FrameEvidence& frame, const EdgeBoard& edges) RT_SAFE {
-  using enum FrameName::Why;
+MatchedTrigger TriggerMatcher::match(const FrameEvidence& frame, const EdgeBoard& edges) RT_SAFE {
+  using enum MatchedTrigger::Why;
   if (association_.pace() == CameraPace::kFreeRunning) {
     const auto nearest = association_.triggerOf(frame.arrival, edges);
-    return nearest ? FrameName{kNamed, *nearest} : FrameName{kNoEdge};
+    return nearest ? MatchedTrigger{kMatched, *nearest} : MatchedTrigger{kNoEdge};
   }
   const auto trigger = fits(settled_, frame, edges);
   if (trigger && (!doubted_ || association_.triggerOf(frame.arrival, edges) == trigger)) {
-    // Half of what the clock is off by now: follows its drift, halves an edge's own jitter. What
-    // the edge itself is off says nothing about the clock.
+    // Half of the difference: that follows the clock's drift and halves the jitter of the edges.
+    // As far as the edge itself is uncertain, a difference says nothing about the clock.
     const rt::Timestamp zero = edges.edge(*trigger) - frame.camera_clock;
     const rt::Nanoseconds off = zero - settled_.clock_zero;
     const rt::Nanoseconds unknown = edges.uncertainty(*trigger);
@@ -57,15 +59,15 @@ FrameName FrameNamer::name(const FrameEvidence& frame, const EdgeBoard& edges) R
                 .arrival = frame.arrival};
     candidate_ = {};
     doubted_ = false;
-    return {kNamed, *trigger};
+    return {kMatched, *trigger};
   }
-  return doubt(frame, edges, trigger.has_value());
+  return relearn(frame, edges, trigger.has_value());
 }
 
-/// A frame that does not fit what is known: a new belief's first, next or last witness.
-FrameName FrameNamer::doubt(const FrameEvidence& frame, const EdgeBoard& edges,
-                            bool possible) RT_SAFE {
-  using enum FrameName::Why;
+/// A frame that does not fit what was learned: the first, second or third for something new.
+MatchedTrigger TriggerMatcher::relearn(const FrameEvidence& frame, const EdgeBoard& edges,
+                                       bool possible) RT_SAFE {
+  using enum MatchedTrigger::Why;
   const bool was_settled = settled_.agreeing != 0;
   bool between_edges = false;
   doubted_ = was_settled;
@@ -73,9 +75,9 @@ FrameName FrameNamer::doubt(const FrameEvidence& frame, const EdgeBoard& edges,
     between_edges =
         !Association::edgeMaybeNear(settled_.clock_zero + frame.camera_clock, tolerance_, edges);
     if (between_edges) {
-      ++settled_.frame_id;  // a frame that nothing asked for uses up an id, and no trigger
+      ++settled_.frame_id;  // a frame that nothing asked for has an id and no trigger
     } else {
-      settled_ = {};  // it names a trigger that cannot be: so it is wrong
+      settled_ = {};  // it leads to a trigger that is impossible: it is wrong
     }
   }
 
@@ -90,8 +92,8 @@ FrameName FrameNamer::doubt(const FrameEvidence& frame, const EdgeBoard& edges,
                 .trigger = *trigger,
                 .frame_id = frame.frame_id,
                 .arrival = frame.arrival};
-  // Seen nearest to the first edge there is no other whose frame it could be, however many edges
-  // followed until somebody asked.
+  // Nearest to the first edge: it can be no other trigger's frame, however many edges have left
+  // until this frame was read.
   const bool only_one = !was_settled && *trigger == 1;
   if (candidate_.agreeing < kAgreeing && !only_one) {
     return {between_edges ? kNoEdge : kUnsettled};
@@ -99,7 +101,7 @@ FrameName FrameNamer::doubt(const FrameEvidence& frame, const EdgeBoard& edges,
   settled_ = candidate_;
   candidate_ = {};
   doubted_ = false;
-  return {kNamed, *trigger};
+  return {kMatched, *trigger};
 }
 
 }  // namespace appliance

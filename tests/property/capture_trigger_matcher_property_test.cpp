@@ -8,14 +8,14 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "appliance/capture/frame_namer.h"
+#include "appliance/capture/trigger_matcher.h"
 
 namespace {
 
 using namespace std::chrono_literals;
 using appliance::Association;
 using appliance::EdgeBoard;
-using appliance::FrameNamer;
+using appliance::TriggerMatcher;
 
 constexpr rt::Nanoseconds kPeriod = 24ms;
 constexpr rt::Nanoseconds kDelay = 1ms;
@@ -123,7 +123,7 @@ class Model {
         clock_base_ = edge(trigger_);
         clock_set_ = 1ms;
         frame_id_ = 0;
-        namer_.restart();  // it forgot its receiver: its stream was started again
+        matcher_.restart();  // it forgot its receiver: its stream was started again
         break;
       case Event::kClockSet:
         // Once in a run: two that add up to a period cannot be seen from outside.
@@ -139,7 +139,7 @@ class Model {
 
   /// @p truth: the trigger whose edge started the exposure; 0: none.
   void look(std::uint64_t truth, rt::Timestamp taken, rt::Timestamp at) {
-    const auto name = namer_.name(
+    const auto name = matcher_.match(
         {.arrival = at, .camera_clock = has_clock_ ? clockAt(taken) : 0ns, .frame_id = ++frame_id_},
         *edges_);
     if (name.trigger != 0 && name.trigger != truth) ++wrong;
@@ -154,7 +154,7 @@ class Model {
   int drift_ppm_;
   rt::Nanoseconds clock_step_;
   std::unique_ptr<EdgeBoard> edges_ = std::make_unique<EdgeBoard>();
-  FrameNamer namer_{Association{kPeriod, kDelay}};
+  TriggerMatcher matcher_{Association{kPeriod, kDelay}};
   std::uint64_t trigger_ = 0;
   std::uint64_t frame_id_ = 500;
   std::uint64_t unnamed_ = 0;
@@ -163,13 +163,13 @@ class Model {
   bool clock_was_set_ = false;
 };
 
-RC_GTEST_PROP(FrameNamer, NeverNamesAFrameWrongly, ()) {
+RC_GTEST_PROP(TriggerMatcher, NeverNamesAFrameWrongly, ()) {
   Model model(true, *rc::gen::inRange(-100, 101));
   model.run(*anyFaults());
   RC_ASSERT(model.wrong == 0U);
 }
 
-RC_GTEST_PROP(FrameNamer, NeverNamesAFrameWronglyWhereTheCameraHasNoClock, ()) {
+RC_GTEST_PROP(TriggerMatcher, NeverNamesAFrameWronglyWhereTheCameraHasNoClock, ()) {
   // Ids and arrivals alone cannot tell an extra frame from a trigger's own, nor a jump of the ids
   // from lost frames: such a camera is believed what it counts.
   Model model(false, 0);
@@ -181,7 +181,7 @@ RC_GTEST_PROP(FrameNamer, NeverNamesAFrameWronglyWhereTheCameraHasNoClock, ()) {
   RC_ASSERT(model.wrong == 0U);
 }
 
-RC_GTEST_PROP(FrameNamer, NamesEveryFrameThatCameLateOrAfterIgnoredTriggers, ()) {
+RC_GTEST_PROP(TriggerMatcher, NamesEveryFrameThatCameLateOrAfterIgnoredTriggers, ()) {
   Model model(true, *rc::gen::inRange(-100, 101));
   auto steps = *anyFaults();
   std::erase_if(steps, [](const Step& step) {
@@ -193,7 +193,7 @@ RC_GTEST_PROP(FrameNamer, NamesEveryFrameThatCameLateOrAfterIgnoredTriggers, ())
   RC_ASSERT(model.named == model.frames);
 }
 
-RC_GTEST_PROP(FrameNamer, IsRightAgainWithTheThirdFrameAfterAnythingSudden, ()) {
+RC_GTEST_PROP(TriggerMatcher, IsRightAgainWithTheThirdFrameAfterAnythingSudden, ()) {
   // A clock set by whole periods names other triggers as neatly as before: the worst case.
   const auto clock_step = *rc::gen::element(rt::Nanoseconds(kClockStep), rt::Nanoseconds(kPeriod));
   Model model(true, *rc::gen::inRange(-100, 101), clock_step);
