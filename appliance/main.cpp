@@ -61,6 +61,7 @@ std::vector<ui::SizePx> sourceSizes(const Rig& rig) {
 ui::RendererConfig rendererConfig(const Config::Display& config, const Rig& rig) {
   return {.width_px = config.width_px,
           .height_px = config.height_px,
+          .rotation_deg = config.rotation_deg,
           .sources = sourceSizes(rig),
           .font_path = config.font,
           .software_threads = config.render_threads};

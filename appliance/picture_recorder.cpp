@@ -6,8 +6,12 @@
 namespace appliance {
 namespace {
 
-// A still is taken of a mode's 10th picture: what came on screen with the mode has settled.
+// A still is taken of a mode's 10th picture: what came on screen with the mode has settled. A
+// picture's text comes with the one after it, so a stopped moment and a view of a sweep are kept
+// a little later than they begin.
 constexpr std::uint32_t kSettled = 10;
+constexpr std::uint32_t kFrozenSettled = 3;
+constexpr std::uint32_t kViewSettled = 2;
 
 }  // namespace
 
@@ -47,16 +51,20 @@ void PictureRecorder::onPicture(const ShownPicture& picture) noexcept {
 
 void PictureRecorder::nameStill(const PictureRecord& record, std::array<char, 32>& name) noexcept {
   pictures_in_mode_ = record.mode == mode_ ? pictures_in_mode_ + 1 : 1;
+  pictures_of_view_ = record.camera_shown == view_ ? pictures_of_view_ + 1 : 1;
   mode_ = record.mode;
+  view_ = record.camera_shown;
   if (record.trigger == 0 || record.substitute) return;
   bool& kept = kept_[static_cast<std::size_t>(record.mode)];
   if (record.mode == Mode::kSweep) {
     bool& view_kept = view_kept_[record.camera_shown];
+    if (pictures_of_view_ < kViewSettled) return;
     if (!view_kept) {
       std::snprintf(name.data(), name.size(), "view%02u", record.camera_shown + 1);
     }
     view_kept = kept = true;
-  } else if (!kept && (pictures_in_mode_ == kSettled || record.mode == Mode::kFrozen)) {
+  } else if (!kept &&
+             pictures_in_mode_ >= (record.mode == Mode::kFrozen ? kFrozenSettled : kSettled)) {
     std::snprintf(name.data(), name.size(), "%s", nameOf(record.mode).data());
     kept = true;
   }

@@ -7,6 +7,7 @@
 
 #include "hal/display_timing.h"
 #include "hal/scene.h"
+#include "hal/typesetter.h"
 #include "rt/clock.h"
 #include "rt/result.h"
 
@@ -57,13 +58,18 @@ class Display {
  public:
   virtual ~Display() = default;
 
-  /// The size that render() draws; between calls it may change with the screen.
+  /// The size of the upright picture that render() draws; between calls it may change with the
+  /// screen.
   [[nodiscard]] virtual DisplayMode mode() const = 0;
   /// What draws, for the report: GL_RENDERER.
   [[nodiscard]] virtual std::string_view renderer() const = 0;
   /// Why frames are uploaded even where they come as dma-bufs, in one line; empty where those are
   /// read in place.
   [[nodiscard]] virtual std::string_view uploadReason() const = 0;
+
+  /// Makes the letters of overlays for this display, on a thread of its own; lives as long as the
+  /// display. None where there is no font: pictures carry no text.
+  [[nodiscard]] virtual Typesetter* typesetter() = 0;
 
   /// Draws into a free buffer, done when it returns.
   [[nodiscard]] virtual rt::Result<RenderInstants> render(const Scene& scene) = 0;

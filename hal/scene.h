@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <type_traits>
 
+#include "hal/overlay.h"
 #include "hal/warp_plan.h"
 
 namespace hal {
-
-/// The line of text over the picture. Trivially copyable; utf-8, zero-terminated.
-struct StatusLine {
-  std::array<char, 128> text{};
-  bool warning = false;  ///< drawn as a badge: the picture is not what was asked for
-  [[nodiscard]] std::string_view view() const { return text.data(); }
-};
 
 /// Pixels [x, x + width) by [y, y + height) of the picture, y down.
 struct RectPx {
@@ -59,7 +52,7 @@ struct Scene {
   static constexpr std::uint32_t kMostLayers = 4;
   std::array<ViewLayer, kMostLayers> layers{};  ///< the lowest first
   std::uint32_t count = 0;                      ///< of layers; with none the picture is empty
-  StatusLine status;
+  const Overlay* overlay = nullptr;             ///< over the views; borrowed like them; none: bare
 };
 static_assert(std::is_trivially_copyable_v<Scene>);
 

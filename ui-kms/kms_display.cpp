@@ -188,6 +188,12 @@ rt::Result<void> KmsDisplay::fitBuffers(rt::Timestamp now) {
   return {};
 }
 
+hal::DisplayMode KmsDisplay::mode() const {
+  const SizePx upright =
+      Orientation(config_.renderer.rotation_deg).turned(SizePx{mode_.width_px, mode_.height_px});
+  return {upright.width, upright.height, mode_.refresh_hz};
+}
+
 std::string_view KmsDisplay::renderer() const {
   return renderer_->context().renderer();
 }
@@ -295,7 +301,7 @@ rt::Result<void> KmsDisplay::readPicture(std::span<std::byte> rgba) {
   if (!buffer) {
     return std::unexpected(rt::Error{rt::Errc::kUnsupported, 0, "read: nothing committed"});
   }
-  return readTarget(buffers_->target(*buffer), rgba);
+  return renderer_->read(buffers_->target(*buffer), rgba);
 }
 
 std::optional<hal::PageFlip> KmsDisplay::committedFlip() const {

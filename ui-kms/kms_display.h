@@ -44,9 +44,10 @@ class KmsDisplay final : public hal::Display, public PictureSource {
       const KmsConfig& config);
   ~KmsDisplay() override;
 
-  [[nodiscard]] hal::DisplayMode mode() const override { return mode_; }
+  [[nodiscard]] hal::DisplayMode mode() const override;
   [[nodiscard]] std::string_view renderer() const override;
   [[nodiscard]] std::string_view uploadReason() const override { return renderer_->uploadReason(); }
+  [[nodiscard]] hal::Typesetter* typesetter() override { return renderer_->typesetter(); }
   [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& scene) override;
   [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t picture_id) override;
   [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override;
@@ -101,7 +102,7 @@ class KmsDisplay final : public hal::Display, public PictureSource {
   std::vector<Drawing> drawings_;  // per buffer
   FramePacer pacer_;
 
-  hal::DisplayMode mode_;
+  hal::DisplayMode mode_;      // the screen's own, whatever way it hangs
   std::uint64_t changes_ = 0;  // of the screen, as far as followed
   std::uint64_t losses_ = 0;
   std::uint64_t serial_ = 0;           // of the last commit

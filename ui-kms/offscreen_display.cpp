@@ -56,7 +56,9 @@ OffscreenDisplay::~OffscreenDisplay() {
 }
 
 hal::DisplayMode OffscreenDisplay::mode() const {
-  return {config_.renderer.width_px, config_.renderer.height_px, config_.refresh_hz};
+  const SizePx upright = Orientation(config_.renderer.rotation_deg)
+                             .turned(SizePx{config_.renderer.width_px, config_.renderer.height_px});
+  return {upright.width, upright.height, config_.refresh_hz};
 }
 
 std::string_view OffscreenDisplay::renderer() const {
@@ -104,7 +106,7 @@ rt::Result<const RenderTarget*> OffscreenDisplay::committedTarget() {
 rt::Result<void> OffscreenDisplay::readPicture(std::span<std::byte> rgba) {
   const auto target = committedTarget();
   if (!target) return std::unexpected(target.error());
-  return readTarget(**target, rgba);
+  return renderer_->read(**target, rgba);
 }
 
 }  // namespace ui

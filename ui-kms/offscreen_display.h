@@ -37,6 +37,7 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   [[nodiscard]] hal::DisplayMode mode() const override;
   [[nodiscard]] std::string_view renderer() const override;
   [[nodiscard]] std::string_view uploadReason() const override { return renderer_->uploadReason(); }
+  [[nodiscard]] hal::Typesetter* typesetter() override { return renderer_->typesetter(); }
   [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& scene) override;
   [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t picture_id) override;
   [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override;

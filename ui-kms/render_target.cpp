@@ -1,6 +1,7 @@
 #include "ui-kms/render_target.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace ui {
 
@@ -31,14 +32,26 @@ std::expected<RenderTarget, std::string> makeRenderTarget(std::uint32_t width_px
   return target;
 }
 
-rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba) {
+rt::Result<void> readTarget(const RenderTarget& target, Orientation orientation,
+                            std::span<std::byte> scratch, std::span<std::byte> rgba) {
   if (rgba.size() != std::size_t{4} * target.width_px * target.height_px) {
     return std::unexpected(rt::Error{rt::Errc::kInvalidConfig, 0, "read: size of the buffer"});
   }
+  const std::span<std::byte> into = orientation.upright() ? rgba : scratch;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glReadPixels(0, 0, static_cast<GLsizei>(target.width_px), static_cast<GLsizei>(target.height_px),
-               GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+               GL_RGBA, GL_UNSIGNED_BYTE, into.data());
+  if (orientation.upright()) return {};
+  const SizePx picture = orientation.turned(SizePx{target.width_px, target.height_px});
+  for (std::uint32_t i = 0; i < picture.width * picture.height; ++i) {
+    const auto x = static_cast<std::int32_t>(i % picture.width);
+    const auto y = static_cast<std::int32_t>(i / picture.width);
+    const hal::RectPx from = orientation.turned(hal::RectPx{x, y, 1, 1}, picture);
+    const auto at =
+        static_cast<std::size_t>(from.y) * target.width_px + static_cast<std::size_t>(from.x);
+    std::memcpy(&rgba[std::size_t{4} * i], &scratch[4 * at], 4);
+  }
   return {};
 }
 

@@ -8,6 +8,7 @@
 
 #include "hal/gl/objects.h"
 #include "rt/result.h"
+#include "ui-kms/orientation.h"
 
 namespace ui {
 
@@ -23,7 +24,9 @@ struct RenderTarget {
 [[nodiscard]] std::expected<RenderTarget, std::string> makeRenderTarget(std::uint32_t width_px,
                                                                         std::uint32_t height_px,
                                                                         GLenum format = GL_RGBA8);
-/// RGBA bytes, top row first. Errors: kInvalidConfig, @p rgba has another size.
-[[nodiscard]] rt::Result<void> readTarget(const RenderTarget& target, std::span<std::byte> rgba);
+/// RGBA bytes of the upright picture, top row first. @p scratch: as large, for a screen that is
+/// turned. Errors: kInvalidConfig, @p rgba has another size.
+[[nodiscard]] rt::Result<void> readTarget(const RenderTarget& target, Orientation orientation,
+                                          std::span<std::byte> scratch, std::span<std::byte> rgba);
 
 }  // namespace ui

@@ -1,6 +1,6 @@
 #include "ui-kms/renderer.h"
 
-#include <cstring>
+#include <memory>
 #include <vector>
 
 #include <opencv2/core/utility.hpp>
@@ -27,32 +27,43 @@ std::expected<std::unique_ptr<Renderer>, std::string> Renderer::create(
     const RendererConfig& config) {
   auto context = gl::Context::create(config.software_threads, config.gbm);
   if (!context) return std::unexpected(context.error());
-  std::unique_ptr<Renderer> renderer(new Renderer(std::move(*context)));
+  std::unique_ptr<Renderer> renderer(new Renderer(std::move(*context), config));
+  auto made = renderer->makePasses(config);
+  if (made) made = renderer->resize(config.width_px, config.height_px);
+  if (made) made = renderer->warmUp(config);
+  if (!made) return std::unexpected(made.error());
+  return renderer;
+}
+
+std::expected<void, std::string> Renderer::makePasses(const RendererConfig& config) {
   DemosaicSite site = config.demosaic;
   if (site == DemosaicSite::kAuto) {
-    site = renderer->context_->software() ? DemosaicSite::kCpu : DemosaicSite::kGpu;
+    site = context_->software() ? DemosaicSite::kCpu : DemosaicSite::kGpu;
   }
   // OpenCV's helpers have no real-time priority; the render thread must not wait for them.
   if (site == DemosaicSite::kCpu) cv::setNumThreads(1);
   auto source = SourceCache::create(site);
   if (!source) return std::unexpected(source.error());
-  renderer->source_ = std::move(*source);
-  renderer->source_->tryImport(*renderer->context_, config.sources);
+  source_ = std::move(*source);
+  source_->tryImport(*context_, config.sources);
   for (const SizePx size : config.sources) {
-    if (auto made = renderer->source_->prepare(size); !made) return std::unexpected(made.error());
+    if (auto made = source_->prepare(size); !made) return made;
   }
   auto warp = WarpPass::create();
   if (!warp) return std::unexpected(warp.error());
-  renderer->warp_ = std::move(*warp);
+  warp_ = std::move(*warp);
   auto blend = BlendTarget::create();
   if (!blend) return std::unexpected(blend.error());
-  renderer->blend_ = std::move(*blend);
-  renderer->font_path_ = config.font_path;
-  renderer->blending_ = config.blending;
-  auto ready = renderer->resize(config.width_px, config.height_px);
-  if (ready) ready = renderer->warmUp(config);
-  if (!ready) return std::unexpected(ready.error());
-  return renderer;
+  blend_ = std::move(*blend);
+  auto overlay = OverlayPass::create(*glyphs_);
+  if (!overlay) return std::unexpected(overlay.error());
+  overlay_ = std::move(*overlay);
+  if (auto fonts = FontSet::create(config.font_path)) {
+    typesetter_ = std::make_unique<TextSetter>(std::move(*fonts), *glyphs_);
+  } else {
+    text_warning_ = fonts.error() + "; pictures go on without text";
+  }
+  return {};
 }
 
 std::expected<void, std::string> Renderer::resize(std::uint32_t width_px, std::uint32_t height_px) {
@@ -60,16 +71,14 @@ std::expected<void, std::string> Renderer::resize(std::uint32_t width_px, std::u
   auto sized = warp_->resize(picture, orientation_);
   if (sized) sized = blend_->resize(width_px, height_px, blending_);
   if (!sized) return sized;
+  overlay_->resize(picture, orientation_);
   picture_ = picture;
-  auto status = StatusLinePass::create(font_path_, width_px, height_px);
-  status_.reset();
-  text_warning_.clear();
-  if (status) {
-    status_ = std::move(*status);
-  } else {
-    text_warning_ = status.error() + "; pictures go on without text";
-  }
+  if (!orientation_.upright()) scratch_.resize(std::size_t{4} * width_px * height_px);
   return {};
+}
+
+rt::Result<void> Renderer::read(const RenderTarget& target, std::span<std::byte> rgba) {
+  return readTarget(target, orientation_, scratch_, rgba);
 }
 
 /// Drivers compile at the first draw. That belongs here, on the thread that may take its time
@@ -82,13 +91,17 @@ std::expected<void, std::string> Renderer::warmUp(const RendererConfig& config) 
   plan.source = {black.data(), size.width, size.height, hal::PixelFormat::kBayerRG8};
   plan.H_camera_display = {1, 0, -16, 0, 1, -16, 0, 0, 1};  // inner and edge cells both
   plan.lens = {.fx_px = 1, .fy_px = 1, .max_radius = 1e9};
-  std::strncpy(scene.status.text.data(), "kagami", scene.status.text.size() - 1);
+  const auto overlay = std::make_unique<hal::Overlay>();
+  overlay->add({.width_px = 8, .height_px = 8});
+  overlay->generation = 1;
+  scene.overlay = overlay.get();
   const auto target = makeRenderTarget(config.width_px, config.height_px);
   if (!target) return std::unexpected(target.error());
   draw(*target, scene);
   scene.layers[1] = scene.layers[0];
   scene.layers[1].opacity = 0.5F;
   scene.count = 2;
+  *overlay = {};  // the first that is made is another one
   draw(*target, scene);
   return {};
 }
@@ -108,7 +121,7 @@ hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::Scene&
     drawInto(target);
     drawLayers(scene, sources, WarpPass::Output::kScreen);
   }
-  if (status_) status_->draw(scene.status);
+  if (scene.overlay != nullptr) overlay_->draw(*scene.overlay);
   if (fence != nullptr) *fence = context_->tryFence();
   if (fence == nullptr || !fence->valid()) glFinish();
   instants.warp_end = rt::now();

@@ -5,16 +5,19 @@
 #include <expected>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "hal/display.h"
 #include "hal/gl/context.h"
 #include "ui-kms/blend_target.h"
+#include "ui-kms/glyph_store.h"
 #include "ui-kms/orientation.h"
+#include "ui-kms/overlay_pass.h"
 #include "ui-kms/render_target.h"
 #include "ui-kms/source_cache.h"
-#include "ui-kms/status_line_pass.h"
+#include "ui-kms/text_setter.h"
 #include "ui-kms/warp_pass.h"
 
 namespace ui {
@@ -22,6 +25,7 @@ namespace ui {
 struct RendererConfig {
   std::uint32_t width_px = 1280;
   std::uint32_t height_px = 720;
+  std::uint32_t rotation_deg = 0;  ///< how far the screen is turned, as in Orientation
   /// All distinct ones of the cameras, so that their storage exists before the first picture.
   std::vector<SizePx> sources;
   std::string font_path;                     ///< empty: the usual places of DejaVu Sans
@@ -48,10 +52,12 @@ class Renderer {
   [[nodiscard]] const gl::Context& context() const { return *context_; }
   /// Why frames are uploaded even where they come as dma-bufs; empty where those are read in place.
   [[nodiscard]] const std::string& uploadReason() const { return source_->uploadReason(); }
-  /// Why there is no status line; empty where there is one.
+  /// For the thread that makes overlays; none without a font.
+  [[nodiscard]] hal::Typesetter* typesetter() { return typesetter_.get(); }
+  /// Why there is no text; empty where there is.
   [[nodiscard]] const std::string& textWarning() const { return text_warning_; }
 
-  /// Another size of pictures from now on.
+  /// Another size of the screen from now on.
   /// Errors: one line; the size is as before.
   [[nodiscard]] std::expected<void, std::string> resize(std::uint32_t width_px,
                                                         std::uint32_t height_px);
@@ -60,26 +66,35 @@ class Renderer {
   /// that has fences, they are written when that one signals; without, it stays empty.
   hal::RenderInstants draw(const RenderTarget& target, const hal::Scene& scene,
                            rt::UniqueFd* fence = nullptr);
+  /// As ui::readTarget().
+  [[nodiscard]] rt::Result<void> read(const RenderTarget& target, std::span<std::byte> rgba);
 
  private:
   using Sources = std::array<GLuint, hal::Scene::kMostLayers>;  // 0: that layer is not drawn
 
-  explicit Renderer(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {}
+  Renderer(std::unique_ptr<gl::Context> context, const RendererConfig& config)
+      : blending_(config.blending),
+        orientation_(config.rotation_deg),
+        context_(std::move(context)),
+        glyphs_(std::make_unique<GlyphStore>()) {}
+  [[nodiscard]] std::expected<void, std::string> makePasses(const RendererConfig& config);
   [[nodiscard]] std::expected<void, std::string> warmUp(const RendererConfig& config);
   [[nodiscard]] Sources load(const hal::Scene& scene, hal::RenderInstants& instants);
   [[nodiscard]] bool needsBlending(const hal::Scene& scene, const Sources& sources) const;
   void drawLayers(const hal::Scene& scene, const Sources& sources, WarpPass::Output output);
 
-  std::string font_path_;
   BlendTarget::Storage blending_ = BlendTarget::Storage::kHalfFloat;
   Orientation orientation_;
-  SizePx picture_;  // upright
+  SizePx picture_;                  // upright
+  std::vector<std::byte> scratch_;  // of a turned screen, for reading back
 
   std::unique_ptr<gl::Context> context_;  // first, so that it outlives all GL objects
   std::optional<SourceCache> source_;
   std::optional<WarpPass> warp_;
   std::optional<BlendTarget> blend_;
-  std::optional<StatusLinePass> status_;
+  std::unique_ptr<GlyphStore> glyphs_;
+  std::unique_ptr<TextSetter> typesetter_;
+  std::optional<OverlayPass> overlay_;
   std::string text_warning_;
 };
 

@@ -58,6 +58,7 @@ std::expected<void, std::string> Box::makeShared(const BoxParts& parts) {
                                                   .board = board_,
                                                   .target = target_,
                                                   .depth = depth_,
+                                                  .overlay = overlay_,
                                                   .commands = commands_,
                                                   .shown = shown_,
                                                   .display = parts.display,

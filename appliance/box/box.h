@@ -68,6 +68,7 @@ class Box final : public ControlSink, public StatusSource {
   RigShelf rigs_;
   TargetTrack target_;
   DepthBoard depth_;
+  OverlayBoard overlay_;
   CaptureBoard board_;
   CommandInbox commands_;
   CommandSender& control_commands_;

@@ -15,6 +15,7 @@
 #include "appliance/geometry/rig_shelf.h"
 #include "appliance/geometry/target_track.h"
 #include "appliance/metrics/metrics_registry.h"
+#include "appliance/overlay/overlay_board.h"
 #include "appliance/render/picture_observer.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
@@ -32,6 +33,7 @@ struct Shared {
   CaptureBoard& board;
   TargetTrack& target;
   DepthBoard& depth;
+  OverlayBoard& overlay;
   CommandInbox& commands;
   ShownBoard& shown;
   hal::Display& display;

@@ -199,6 +199,10 @@ void readDisplay(Section section, Config::Display& display) {
   section.integer("width_px", display.width_px, {64, 7680, "px"});
   section.integer("height_px", display.height_px, {64, 4320, "px"});
   section.number("refresh_hz", display.refresh_hz, {1, 480, "Hz"});
+  section.integer("rotation_deg", display.rotation_deg, {0, 270, "degrees"});
+  if (display.rotation_deg % 90 != 0) {
+    section.fail("rotation_deg", "rotation_deg must be 0, 90, 180 or 270");
+  }
   section.number("zoom", display.zoom, {0.1, 20});
   section.integer("render_threads", display.render_threads, {1, 64, "threads"});
   section.word("font", display.font);

@@ -86,6 +86,7 @@ struct Config {
     std::uint32_t width_px = 1280;
     std::uint32_t height_px = 720;
     double refresh_hz = 80;
+    std::uint32_t rotation_deg = 0;  ///< how far the screen is turned, clockwise
     double zoom = 1;
     std::uint32_t render_threads = 2;
     std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";

@@ -1,32 +1,21 @@
 #include "appliance/director/status_line.h"
 
-#include <array>
+#include <string>
 #include <string_view>
 
 namespace appliance {
 namespace {
 
-/// Appends to a line and cuts what does not fit; the terminating zero always does.
+/// Appends to a line.
 class LineWriter {
  public:
-  explicit LineWriter(hal::StatusLine& line) : line_(line) {}
+  explicit LineWriter(std::string& line) : line_(line) {}
 
   LineWriter& operator<<(std::string_view text) {
-    for (const char c : text) {
-      if (used_ + 1 < line_.text.size()) line_.text[used_++] = c;
-    }
+    line_ += text;
     return *this;
   }
-
-  LineWriter& operator<<(std::uint64_t number) {
-    std::array<char, 20> digits{};
-    std::size_t first = digits.size();
-    do {
-      digits[--first] = static_cast<char>('0' + number % 10);
-      number /= 10;
-    } while (number != 0);
-    return *this << std::string_view(digits.data() + first, digits.size() - first);
-  }
+  LineWriter& operator<<(std::uint64_t number) { return *this << std::to_string(number); }
 
   /// Seconds with @p decimals places, rounded.
   void seconds(rt::Nanoseconds time, int decimals) {
@@ -43,11 +32,10 @@ class LineWriter {
   }
 
  private:
-  hal::StatusLine& line_;
-  std::size_t used_ = 0;
+  std::string& line_;
 };
 
-/// How long ago the stopped moment was when it was stopped; nothing for the newest one.
+/// How long ago the stopped moment was; nothing for the newest one.
 void writeAge(LineWriter& out, rt::Nanoseconds delay) {
   constexpr rt::Nanoseconds kShownAsZero = std::chrono::milliseconds(5);
   if (delay < kShownAsZero) return;
@@ -89,9 +77,9 @@ void writeBadge(LineWriter& out, const Shot& shot) {
 
 }  // namespace
 
-hal::StatusLine statusLine(const Shot& shot, std::uint32_t cameras) RT_SAFE {
-  hal::StatusLine line;
-  LineWriter out(line);
+StatusText statusText(const Shot& shot, std::uint32_t cameras) {
+  StatusText line;
+  LineWriter out(line.text);
   writeMode(out, shot);
   out << "   view " << std::uint64_t{shot.camera_wanted} + 1 << "/" << std::uint64_t{cameras};
   if (shot.at_history_end) out << "   end of memory";

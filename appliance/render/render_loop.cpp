@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "appliance/director/status_line.h"
 #include "appliance/geometry/warp_planner.h"
 #include "rt/periodic_loop.h"
 
@@ -57,7 +56,9 @@ void RenderLoop::turn() noexcept {
                                std::span(commands_).first(command_count_));
   command_count_ = 0;
   hold_.keep(wanted.shot.hold);
-  wanted.line = statusLine(wanted.shot, parts_.frames.cameras());
+  overlay_ = &parts_.overlay.overlay.latest();
+  wanted.overlay = overlay_->generation;
+  sayWhatIsShown(wanted.shot);
   std::optional<PinnedFrame> frame;
   if (wanted.shot.trigger != 0) {
     frame = hold_.tryPin(wanted.shot.camera_shown, wanted.shot.trigger);
@@ -74,8 +75,10 @@ void RenderLoop::turn() noexcept {
 
   followScreen();
   const bool visible = counters_.screen.state == hal::ScreenState::kShowing;
-  if (visible && ready && !onScreen(wanted) && mayDraw(wanted, wake) && show(wanted, frame, wake)) {
+  if (visible && ready && !onScreen(wanted, wake) && mayDraw(wanted, wake) &&
+      show(wanted, frame, wake)) {
     on_screen_ = wanted;
+    shown_at_ = wake;
     stale_ = false;
     first_command_ = {};
   }
@@ -87,6 +90,18 @@ void RenderLoop::turn() noexcept {
   parts_.shown.exposure_middle.store(wanted.exposure_middle, std::memory_order_relaxed);
   status_.publish(counters_);
   parts_.shown.mode.store(wanted.shot.mode, std::memory_order_relaxed);
+}
+
+void RenderLoop::sayWhatIsShown(const Shot& shot) noexcept {
+  const hal::DisplayMode mode = parts_.display.mode();
+  const OverlaySubject subject{.shot = shot,
+                               .cameras = parts_.frames.cameras(),
+                               .width_px = mode.width_px,
+                               .height_px = mode.height_px};
+  if (subject == subject_) return;
+  subject_ = subject;
+  parts_.overlay.subject.publish(subject);
+  parts_.overlay.subject_changed.ring();
 }
 
 void RenderLoop::takeCommands() noexcept {
@@ -111,11 +126,14 @@ void RenderLoop::followScreen() noexcept {
   counters_.screen = screen;
 }
 
-bool RenderLoop::onScreen(const Wanted& wanted) const noexcept {
+/// A new overlay alone gets a picture of its own where no other one carries it: not while views
+/// change faster than that.
+bool RenderLoop::onScreen(const Wanted& wanted, rt::Timestamp now) const noexcept {
+  const bool overlay_waits = now < shown_at_ + parameters_.trigger_period / 2;
   return picture_id_ != 0 && !stale_ && first_command_ == rt::Timestamp{} &&
          wanted.shot.trigger == on_screen_.shot.trigger &&
          wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
-         wanted.line.view() == on_screen_.line.view() &&
+         (wanted.overlay == on_screen_.overlay || overlay_waits) &&
          !looksDifferent(on_screen_.target, wanted.target);
 }
 
@@ -161,7 +179,7 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
                        .wake = wake,
                        .button_event = first_command_};
 
-  hal::Scene scene{.status = wanted.line};
+  hal::Scene scene{.overlay = overlay_};
   if (frame) {
     record.target_point_begin = wanted.target_point_begin;
     record.target_point_end = wanted.target_point_end;

@@ -15,6 +15,7 @@
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/target_track.h"
 #include "appliance/light/flicker.h"
+#include "appliance/overlay/overlay_board.h"
 #include "appliance/render/locked_vblanks.h"
 #include "appliance/render/moment_hold.h"
 #include "appliance/render/picture_observer.h"
@@ -48,6 +49,7 @@ struct RenderParts {
   ShownBoard& shown;
   const TargetTrack& target;
   hal::Display& display;
+  OverlayBoard& overlay;
   TraceProducer* trace;       ///< none: not traced
   PictureObserver* observer;  ///< none: no observer
 };
@@ -91,7 +93,7 @@ class RenderLoop {
   struct Wanted {
     Shot shot;
     rt::Timestamp trigger_edge;  // of the shown frame
-    hal::StatusLine line;
+    std::uint64_t overlay = 0;   // its generation
     rt::Timestamp exposure_middle;
     Target target;
     rt::Timestamp target_point_begin;
@@ -101,8 +103,9 @@ class RenderLoop {
   void turn() noexcept;
   void takeCommands() noexcept;
   void followScreen() noexcept;
+  void sayWhatIsShown(const Shot& shot) noexcept;
   [[nodiscard]] rt::Timestamp exposureMiddle(rt::Timestamp edge) const noexcept;
-  [[nodiscard]] bool onScreen(const Wanted& wanted) const noexcept;
+  [[nodiscard]] bool onScreen(const Wanted& wanted, rt::Timestamp now) const noexcept;
   [[nodiscard]] bool show(const Wanted& wanted, const std::optional<PinnedFrame>& frame,
                           rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
@@ -125,7 +128,10 @@ class RenderLoop {
   std::size_t command_count_ = 0;
   rt::Timestamp first_command_;  // when the oldest of them was given; the epoch: none
 
+  const hal::Overlay* overlay_ = nullptr;  // the newest; holds during a turn
+  OverlaySubject subject_;                 // as said last
   Wanted on_screen_;
+  rt::Timestamp shown_at_;
   bool stale_ = false;  // the screen lost that picture
   FlickerCompensation flicker_;
   RenderAllowance allowance_;

@@ -27,6 +27,7 @@ RenderParts partsOf(const Shared& shared, StoredFrames& frames) {
           .shown = shared.shown,
           .target = shared.target,
           .display = shared.display,
+          .overlay = shared.overlay,
           .trace = shared.traceProducer("render"),
           .observer = shared.observer};
 }

@@ -2,7 +2,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,8 +40,6 @@ struct Scene {
     const double scale = 0.9 * kSourceHeightPx / height_px;
     plan.H_camera_display = {scale, 0.05, 20, -0.03, scale, 60, 1e-5, 2e-5, 1};
     plan.lens = {1180, 1180, 639.5, 511.5, {-0.1, 0.02, 1e-3, 1e-3, 0}, 2};
-    std::strncpy(picture.status.text.data(), "delayed 1.50 s   camera 7",
-                 picture.status.text.size() - 1);
   }
 
   /// Two cameras beside each other, each frame loaded anew, as in a live comparison.
@@ -52,6 +49,15 @@ struct Scene {
     both.layers[1] = both.layers[0];
     both.layers[0].where = {0, 0, display.width / 2, display.height};
     both.layers[1].where = {display.width / 2, 0, display.width / 2, display.height};
+    return both;
+  }
+
+  /// One camera through another, blended.
+  [[nodiscard]] hal::Scene ghost() const {
+    hal::Scene both = picture;
+    both.count = 2;
+    both.layers[1] = both.layers[0];
+    both.layers[1].opacity = 0.5F;
     return both;
   }
 
@@ -76,6 +82,7 @@ Scene& sceneOf(const benchmark::State& state) {
 struct Screen {
   std::unique_ptr<ui::Renderer> renderer;
   std::optional<ui::RenderTarget> target;
+  hal::Overlay overlay;  // a line of text
 };
 
 Screen* screenOf(const benchmark::State& state, std::string& error) {
@@ -97,6 +104,15 @@ Screen* screenOf(const benchmark::State& state, std::string& error) {
       return nullptr;
     }
     screen.target = std::move(*target);
+    if (hal::Typesetter* const typesetter = screen.renderer->typesetter()) {
+      const auto height_px = static_cast<float>(config.height_px);
+      typesetter->begin(screen.overlay);
+      typesetter->set(
+          screen.overlay, "delayed 1.50 s   camera 7",
+          {.x_px = 40, .baseline_px = height_px - 40, .width_px = 1'000, .size_px = height_px / 18},
+          {});
+      typesetter->finish(screen.overlay);
+    }
   }
   if (!screen.renderer->context().bind()) {
     error = "the context is not ours";
@@ -114,9 +130,11 @@ void draw(benchmark::State& state, const hal::Scene& picture) {
     state.SkipWithError("no renderer");
     return;
   }
+  hal::Scene scene = picture;
+  scene.overlay = &screen->overlay;
   double warp_ns = 0;
   for (auto _ : state) {
-    const auto instants = screen->renderer->draw(*screen->target, picture);
+    const auto instants = screen->renderer->draw(*screen->target, scene);
     warp_ns +=
         std::chrono::duration<double, std::nano>(instants.warp_end - instants.upload_end).count();
   }
@@ -129,6 +147,9 @@ void ours(benchmark::State& state) {
 }
 void sideBySide(benchmark::State& state) {
   draw(state, sceneOf(state).sideBySide());
+}
+void ghost(benchmark::State& state) {
+  draw(state, sceneOf(state).ghost());
 }
 
 /// What OpenCV works on; the demosaicing is its own, as it is ours on a software renderer.
@@ -201,6 +222,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
 }
 BENCHMARK(ours)->Apply(sizes);
 BENCHMARK(sideBySide)->Apply(sizes);
+BENCHMARK(ghost)->Apply(sizes);
 BENCHMARK(demosaicAndRemap)->Apply(sizes);
 BENCHMARK(remap)->Apply(sizes);
 BENCHMARK(demosaicAndWarpPerspective)->Apply(sizes);
@@ -248,6 +270,10 @@ std::vector<bench::Comparison> compare(const bench::Repetitions& results, unsign
                  .rival = samples("ours/1280/720", "one camera"),
                  .bar = bench::Bar{Kind::kRatioAtMost, 1.7},
                  .not_judged = gpu ? "a GPU draws" : ""});
+  out.push_back({.what = "720p" + with + ", a ghost",
+                 .unit = "ms",
+                 .ours = samples("ghost/1280/720", "two cameras, blended"),
+                 .rival = samples("ours/1280/720", "one camera")});
   if (!gpu && all_cpus) {
     out.push_back({.what = "EGL on a GPU, all CPUs",
                    .unit = "ms",

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,13 +21,13 @@ struct DisplayBackend {
   std::function<std::unique_ptr<hal::Display>()> make;
 };
 
-/// A display of one backend, and a picture and a status line to draw.
+/// A display of one backend, and a picture and a line of text to draw.
 class DisplayConformance : public testing::TestWithParam<DisplayBackend> {
  protected:
   void SetUp() override {
     display_ = GetParam().make();
     ASSERT_NE(display_, nullptr);
-    std::strncpy(status_.text.data(), "live", status_.text.size() - 1);
+    write("live");
     pixels_.assign(std::size_t{64} * 48, std::byte{128});
     plan_.source = {pixels_.data(), 64, 48, hal::PixelFormat::kBayerRG8};
     plan_.H_camera_display = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -36,7 +35,16 @@ class DisplayConformance : public testing::TestWithParam<DisplayBackend> {
   }
 
   [[nodiscard]] hal::Scene scene() const {
-    return {.layers = {hal::ViewLayer{.plan = plan_}}, .count = 1, .status = status_};
+    return {.layers = {hal::ViewLayer{.plan = plan_}}, .count = 1, .overlay = overlay_.get()};
+  }
+  /// The overlay's only line from now on.
+  void write(const std::string& text) {
+    hal::Typesetter* const typesetter = display_->typesetter();
+    if (typesetter == nullptr) return;  // no font here
+    typesetter->begin(*overlay_);
+    typesetter->set(*overlay_, text,
+                    {.x_px = 4, .baseline_px = 30, .width_px = 5'000, .size_px = 20}, {});
+    typesetter->finish(*overlay_);
   }
   void renderOrFail() { ASSERT_TRUE(display_->render(scene())); }
 
@@ -64,7 +72,7 @@ class DisplayConformance : public testing::TestWithParam<DisplayBackend> {
   std::unique_ptr<hal::Display> display_;
   std::vector<std::byte> pixels_;
   hal::WarpPlan plan_;
-  hal::StatusLine status_;
+  std::unique_ptr<hal::Overlay> overlay_ = std::make_unique<hal::Overlay>();
 };
 
 }  // namespace test

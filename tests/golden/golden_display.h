@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <string>
@@ -11,8 +12,10 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "appliance/overlay/status_overlay.h"
 #include "tests/golden/synthetic_scene.h"
 #include "ui-kms/cpu_demosaic.h"
 #include "ui-kms/offscreen_display.h"
@@ -79,6 +82,15 @@ inline std::unique_ptr<ui::OffscreenDisplay> makeDisplay(
   return openDisplay(renderer);
 }
 
+/// For looking at: with KAGAMI_PICTURES set, each picture becomes a file in that folder.
+inline void keepPicture(const std::string& name, const cv::Mat3f& rgb) {
+  const char* folder = std::getenv("KAGAMI_PICTURES");
+  if (folder == nullptr) return;
+  cv::Mat3f bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  cv::imwrite(std::string(folder) + "/" + name + ".png", bgr);
+}
+
 /// Renders, commits and reads back, as RGB from 0 to 255.
 inline cv::Mat3f shownScene(ui::OffscreenDisplay& display, const hal::Scene& scene) {
   const hal::DisplayMode mode = display.mode();
@@ -95,9 +107,27 @@ inline cv::Mat3f shownScene(ui::OffscreenDisplay& display, const hal::Scene& sce
   return picture;
 }
 
+/// An overlay of this display, filled in by @p draw(typesetter, overlay).
+template <class Draw>
+std::unique_ptr<hal::Overlay> overlayOf(ui::OffscreenDisplay& display, Draw draw) {
+  auto overlay = std::make_unique<hal::Overlay>();
+  hal::Typesetter* const typesetter = display.typesetter();
+  if (typesetter == nullptr) return overlay;
+  typesetter->begin(*overlay);
+  draw(*typesetter, *overlay);
+  typesetter->finish(*overlay);
+  EXPECT_EQ(overlay->refused, 0U);
+  return overlay;
+}
+
 inline cv::Mat3f shown(ui::OffscreenDisplay& display, const hal::WarpPlan* plan,
-                       const hal::StatusLine& status = {}) {
-  hal::Scene scene{.status = status};
+                       const appliance::StatusText& status = {}) {
+  hal::Scene scene;
   if (plan != nullptr) scene.layers[scene.count++].plan = *plan;
+  const auto overlay = overlayOf(display, [&](hal::Typesetter& typesetter, hal::Overlay& filled) {
+    const hal::DisplayMode mode = display.mode();
+    addStatusLine(status, mode.width_px, mode.height_px, typesetter, filled);
+  });
+  scene.overlay = overlay.get();
   return shownScene(display, scene);
 }

@@ -1,12 +1,9 @@
 #include <array>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "tests/golden/golden_display.h"
 #include "tests/golden/reference_warp.h"
@@ -18,15 +15,6 @@ const cv::Size kFrame(1280, 1024);
 const cv::Mat1b kEverywhere(kDisplay, uchar{255});
 const hal::RectPx kLeft{0, 0, 640, 720};
 const hal::RectPx kRight{640, 0, 640, 720};
-
-/// For looking at: with KAGAMI_PICTURES set, each picture becomes a file in that folder.
-void keep(const std::string& name, const cv::Mat3f& rgb) {
-  const char* folder = std::getenv("KAGAMI_PICTURES");
-  if (folder == nullptr) return;
-  cv::Mat3f bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  cv::imwrite(std::string(folder) + "/" + name + ".png", bgr);
-}
 
 /// Two cameras that see other things, and a scene of layers with their frames.
 class SceneGolden : public testing::Test {
@@ -66,7 +54,7 @@ class SceneGolden : public testing::Test {
     const auto display = openDisplay(config);
     ASSERT_NE(display, nullptr);
     const cv::Mat3f picture = shownScene(*display, scene(layers));
-    keep(name, picture);
+    keepPicture(name, picture);
     const double db = psnr(picture, reference(layers), kEverywhere);
     RecordProperty("psnr_db", std::to_string(db));
     EXPECT_GE(db, kEnoughDb);

@@ -1,4 +1,3 @@
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -37,13 +36,6 @@ class WarpGolden : public testing::Test {
     cv::Mat1b lit;
     cv::inRange(picture, cv::Scalar::all(-1), cv::Scalar::all(0.5), lit);
     EXPECT_EQ(cv::countNonZero(core & ~lit), 0) << "lit pixels in the border";
-  }
-
-  static hal::StatusLine line(const char* text, bool warning = false) {
-    hal::StatusLine status;
-    std::strncpy(status.text.data(), text, status.text.size() - 1);
-    status.warning = warning;
-    return status;
   }
 };
 
@@ -157,51 +149,12 @@ TEST_F(WarpGolden, WithoutAPlanThePictureIsEmpty) {
   EXPECT_EQ(cv::countNonZero(empty.reshape(1)), 0);
 }
 
-TEST_F(WarpGolden, StatusLineIsLightOnADarkPlateAndTellsTextsApart) {
-  const auto display = makeDisplay();
-  ASSERT_NE(display, nullptr);
-  ASSERT_EQ(display->textWarning(), "");
-  const cv::Mat3f live = shown(*display, nullptr, line("live"));
-  const cv::Mat3f frozen = shown(*display, nullptr, line("frozen"));
-  double brightest = 0;
-  cv::minMaxLoc(live.reshape(1), nullptr, &brightest);
-  EXPECT_GT(brightest, 220);
-  EXPECT_GT(cv::norm(live, frozen, cv::NORM_L1), 100'000);
-  // It keeps to the foot of the picture.
-  EXPECT_EQ(cv::countNonZero(live.rowRange(0, 600).clone().reshape(1)), 0);
-}
-
-TEST_F(WarpGolden, StatusLettersAreReadableFromFiveMetres) {
-  const auto display = makeDisplay();
-  ASSERT_NE(display, nullptr);
-  const cv::Mat3f picture = shown(*display, nullptr, line("H"));
-  cv::Mat1b bright;
-  cv::inRange(picture, cv::Scalar::all(200), cv::Scalar::all(255), bright);
-  const cv::Rect letter = cv::boundingRect(bright);
-  EXPECT_GE(letter.height, kDisplay.height / 26);  // a capital is 0.7 of the type size
-  EXPECT_LE(letter.height, kDisplay.height / 18);
-}
-
-TEST_F(WarpGolden, AWarningIsABadgeOfAnotherColour) {
-  const auto display = makeDisplay();
-  ASSERT_NE(display, nullptr);
-  const cv::Mat3f plain = shown(*display, nullptr, line("camera 8"));
-  const cv::Mat3f badge = shown(*display, nullptr, line("camera 8", true));
-  const auto amber = [](const cv::Mat3f& picture) {
-    cv::Mat1b mask;
-    cv::inRange(picture, cv::Scalar(200, 120, 0), cv::Scalar(255, 200, 90), mask);
-    return cv::countNonZero(mask);
-  };
-  EXPECT_EQ(amber(plain), 0);
-  EXPECT_GT(amber(badge), 2'000);
-}
-
 TEST_F(WarpGolden, AMissingFontIsNamedAndThePictureGoesOn) {
   const auto display = makeDisplay(ui::DemosaicSite::kCpu, "/nowhere/none.ttf");
   ASSERT_NE(display, nullptr);
   EXPECT_NE(display->textWarning().find("/nowhere/none.ttf"), std::string::npos);
   Camera camera(kLandscape);
-  const cv::Mat3f picture = shown(*display, &camera.plan, line("live"));
+  const cv::Mat3f picture = shown(*display, &camera.plan, {.text = "live"});
   const ReferencePicture reference = referenceWarp(camera.plan, camera.demosaiced(), kDisplay);
   EXPECT_GE(psnr(picture, reference.rgb, reference.inside), kEnoughDb);
 }

@@ -116,6 +116,7 @@ class NotingDisplay final : public hal::Display {
   [[nodiscard]] hal::DisplayMode mode() const override { return {320, 256, 60}; }
   [[nodiscard]] std::string_view renderer() const override { return "a test"; }
   [[nodiscard]] std::string_view uploadReason() const override { return {}; }
+  [[nodiscard]] hal::Typesetter* typesetter() override { return nullptr; }
   [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& scene) override {
     const hal::SourceImage& source = scene.layers[0].plan.source;
     hal::RenderInstants instants;
@@ -170,6 +171,7 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
   ShownBoard on_screen;
   const TargetTrack target;
   NotingDisplay display;
+  OverlayBoard overlay;
   ImportCounter observer;
   RenderLoop loop({.rig = rig,
                    .frames = shown,
@@ -178,6 +180,7 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
                    .shown = on_screen,
                    .target = target,
                    .display = display,
+                   .overlay = overlay,
                    .trace = nullptr,
                    .observer = &observer},
                   {.trigger_period = std::chrono::milliseconds(25)});

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -32,12 +33,24 @@ class NoFrames final : public StoredFrames {
   }
 };
 
-/// Draws for 2 ms and then refuses every picture.
-class RefusingDisplay final : public hal::Display {
+/// A screen that is always there.
+class TestDisplay : public hal::Display {
  public:
   [[nodiscard]] hal::DisplayMode mode() const override { return {320, 180, 60}; }
   [[nodiscard]] std::string_view renderer() const override { return "a test"; }
   [[nodiscard]] std::string_view uploadReason() const override { return {}; }
+  [[nodiscard]] hal::Typesetter* typesetter() override { return nullptr; }
+  [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override { return std::nullopt; }
+  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override { return std::nullopt; }
+  [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
+  void releaseScreen() override {}
+  void takeScreen() override {}
+  void detach() override {}
+};
+
+/// Draws for 2 ms and then refuses every picture.
+class RefusingDisplay final : public TestDisplay {
+ public:
   [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& /*scene*/) override {
     const rt::Timestamp begin = rt::now();
     while (rt::now() < begin + 2ms) {
@@ -51,13 +64,7 @@ class RefusingDisplay final : public hal::Display {
   [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t /*picture_id*/) override {
     return std::unexpected(rt::Error{.code = rt::Errc::kBusy, .where = "commit"});
   }
-  [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override { return std::nullopt; }
-  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override { return std::nullopt; }
   [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return rt::now(); }
-  [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
-  void releaseScreen() override {}
-  void takeScreen() override {}
-  void detach() override {}
 
   [[nodiscard]] rt::Nanoseconds drawing() const { return rt::Nanoseconds(drawing_ns_.load()); }
   [[nodiscard]] rt::Nanoseconds longest() const { return rt::Nanoseconds(longest_ns_.load()); }
@@ -69,26 +76,60 @@ class RefusingDisplay final : public hal::Display {
   std::atomic<int> pictures_ = 0;
 };
 
-TEST(RenderLoop, SpendsItsAllowanceOnPicturesThatTheDisplayRefuses) {
+/// Takes every picture and notes its overlay.
+class NotingDisplay final : public TestDisplay {
+ public:
+  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& scene) override {
+    overlay_ = scene.overlay->generation;
+    return hal::RenderInstants{};
+  }
+  [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t /*picture_id*/) override {
+    ++pictures_;
+    return rt::now();
+  }
+  [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return std::nullopt; }
+
+  [[nodiscard]] std::uint64_t overlay() const { return overlay_; }
+  [[nodiscard]] int pictures() const { return pictures_; }
+
+ private:
+  std::atomic<std::uint64_t> overlay_ = 0;
+  std::atomic<int> pictures_ = 0;
+};
+
+/// What a render loop without frames works with.
+struct Bench {
+  explicit Bench(hal::Display& display) : display(display) {
+    rig.cameras.push_back({.name = "only", .width_px = 64, .height_px = 64});
+  }
+  [[nodiscard]] RenderParts parts() {
+    return {.rig = rig,
+            .frames = frames,
+            .board = board,
+            .commands = commands,
+            .shown = shown,
+            .target = target,
+            .display = display,
+            .overlay = *overlay,
+            .trace = nullptr,
+            .observer = nullptr};
+  }
+
+  hal::Display& display;
   Rig rig;
-  rig.cameras.push_back({.name = "only", .width_px = 64, .height_px = 64});
   NoFrames frames;
-  CaptureBoard board(1);
-  CommandInbox commands(board.wake_render);
+  CaptureBoard board{1};
+  CommandInbox commands{board.wake_render};
   ShownBoard shown;
-  const TargetTrack target;
+  TargetTrack target;
+  std::unique_ptr<OverlayBoard> overlay = std::make_unique<OverlayBoard>();
+};
+
+TEST(RenderLoop, SpendsItsAllowanceOnPicturesThatTheDisplayRefuses) {
   RefusingDisplay display;
+  Bench bench(display);
   constexpr rt::Nanoseconds kPeriod = 10ms;
-  RenderLoop loop({.rig = rig,
-                   .frames = frames,
-                   .board = board,
-                   .commands = commands,
-                   .shown = shown,
-                   .target = target,
-                   .display = display,
-                   .trace = nullptr,
-                   .observer = nullptr},
-                  {.trigger_period = kPeriod});
+  RenderLoop loop(bench.parts(), {.trigger_period = kPeriod});
   const rt::Timestamp begin = rt::now();
   {
     const std::jthread render([&loop](const std::stop_token& stop) { loop.run(stop); });
@@ -97,6 +138,33 @@ TEST(RenderLoop, SpendsItsAllowanceOnPicturesThatTheDisplayRefuses) {
   // At most 60 % of the time and of a burst of a period, and a picture that began just before.
   const rt::Nanoseconds passed = rt::now() - begin;
   EXPECT_LE(display.drawing(), (passed + kPeriod) * 6 / 10 + display.longest());
+}
+
+TEST(RenderLoop, SaysWhatItShowsAndGivesANewOverlayAPictureOfItsOwn) {
+  NotingDisplay display;
+  Bench bench(display);
+  RenderLoop loop(bench.parts(), {.trigger_period = 5ms});
+  const std::jthread render([&loop](const std::stop_token& stop) { loop.run(stop); });
+  EXPECT_TRUE(bench.overlay->subject_changed.waitUntil(rt::now() + 20s));
+  const OverlaySubject subject = bench.overlay->subject.latest();
+  EXPECT_EQ(subject.cameras, 1U);
+  EXPECT_EQ(subject.width_px, 320U);
+  EXPECT_EQ(subject.height_px, 180U);
+
+  const auto overlay = std::make_unique<hal::Overlay>();
+  for (std::uint64_t generation = 1; generation <= 3; ++generation) {
+    overlay->generation = generation;
+    bench.overlay->overlay.publish(*overlay);
+    const rt::Timestamp patience = rt::now() + 20s;
+    while (display.overlay() != generation && rt::now() < patience) {
+      std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_EQ(display.overlay(), generation);
+  }
+  // Nothing changes any more: nothing is drawn any more.
+  const int pictures = display.pictures();
+  std::this_thread::sleep_for(50ms);
+  EXPECT_LE(display.pictures(), pictures + 1);
 }
 
 }  // namespace

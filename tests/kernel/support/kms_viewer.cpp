@@ -1,6 +1,5 @@
 #include "tests/kernel/support/kms_viewer.h"
 
-#include <cstdio>
 #include <thread>
 #include <utility>
 
@@ -46,7 +45,6 @@ rt::Result<rt::Timestamp> KmsViewer::tryShow() {
   const double scale = 1.1 * kWidthPx / mode.width_px;
   plan.H_camera_display = {scale, 0.1 * scale, -2, -0.1 * scale, scale, 1, 0, 0, 1};
   plan.lens = {.fx_px = 50, .fy_px = 50, .cx_px = 31.5, .cy_px = 23.5, .max_radius = 10};
-  std::snprintf(scene.status.text.data(), scene.status.text.size(), "picture %lu", pictures_);
   const auto drawn = display_->render(scene);
   if (!drawn) return std::unexpected(drawn.error());
   return display_->commit(pictures_);
