@@ -16,6 +16,9 @@ class Remarks {
   void add(std::string key, std::string text) {
     remarks_.push_back({.key = std::move(key), .text = std::move(text)});
   }
+  void add(std::string key, const Phrase& phrase) {
+    remarks_.push_back(remarkOf(std::move(key), phrase));
+  }
   [[nodiscard]] const std::vector<Remark>& list() const { return remarks_; }
 
  private:

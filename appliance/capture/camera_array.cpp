@@ -77,10 +77,12 @@ std::vector<CameraStatus> CameraArray::statuses() const {
   for (std::size_t i = 0; i < supervisors_.size(); ++i) {
     const CollectorCounts counts = collectors_[i]->counts();
     const CameraHealth health = supervisors_[i]->health();
+    const Phrase reason = reasonOf(health, supervisors_[i]->silentFor(now));
     statuses.push_back({.name = rig_.cameras[i].name,
                         .state = health.state,
                         .trouble = health.trouble,
-                        .reason = reasonOf(health, supervisors_[i]->silentFor(now)),
+                        .reason = textOf(reason),
+                        .reason_word = reason.word,
                         .frames_lost = counts.missing,
                         .frames_away = counts.away,
                         .frames_incomplete = counts.damaged()});

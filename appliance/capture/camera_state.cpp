@@ -1,56 +1,56 @@
 #include "appliance/capture/camera_state.h"
 
-#include <array>
-#include <cstdio>
+#include <chrono>
 
 namespace appliance {
 namespace {
 
-std::string holder(const std::string& detail) {
-  return "held by another program" + (detail.empty() ? "" : " at " + detail);
-}
-
-std::string wrongOf(const CameraHealth& health) {
+/// What is wrong with a camera that delivers frames, or whose frames do not matter.
+Phrase wrongOf(const CameraHealth& health) {
   switch (health.trouble) {
     case CameraTrouble::kNone:
-      return "";
+      return {};
     case CameraTrouble::kNoAnswer:
-      return "check its cable, its power and its switch port";
+      return phrase<Word::kCameraNoAnswer>();
     case CameraTrouble::kHeld:
-      return holder(health.detail) + ": end that program; the camera then comes by itself";
+      return health.detail.empty() ? phrase<Word::kCameraHeld>()
+                                   : phrase<Word::kCameraHeldBy>(health.detail);
     case CameraTrouble::kRefuses:
-      return health.detail;
+      return phrase<Word::kCameraRefuses>(health.detail);
     case CameraTrouble::kSilent:
-      return "it answers: check its trigger wire";
+      return phrase<Word::kCameraSilentFromStart>();
     case CameraTrouble::kGaps:
-      return "some triggers bring no frame: check its trigger wire and its frame rate limit";
+      return phrase<Word::kCameraGaps>();
     case CameraTrouble::kDamaged:
-      return "frames come incomplete or in another size: check its cable, its switch port and "
-             "its packet size";
+      return phrase<Word::kCameraDamaged>();
     case CameraTrouble::kExtra:
-      return "it sends more frames than there are triggers: check its trigger wire for noise";
+      return phrase<Word::kCameraExtra>();
   }
-  return "";
+  return {};
+}
+
+/// The same for one that delivered frames and stopped.
+Phrase silenceOf(const CameraHealth& health, double seconds) {
+  switch (health.trouble) {
+    case CameraTrouble::kNone:
+      return phrase<Word::kCameraQuiet>(seconds);
+    case CameraTrouble::kNoAnswer:
+      return phrase<Word::kCameraGone>(seconds);
+    case CameraTrouble::kSilent:
+      return phrase<Word::kCameraSilent>(seconds);
+    case CameraTrouble::kDamaged:
+      return phrase<Word::kCameraLostDamaged>(seconds);
+    default:
+      return wrongOf(health);
+  }
 }
 
 }  // namespace
 
-std::string reasonOf(const CameraHealth& health, std::optional<rt::Nanoseconds> silent_for) {
-  std::string wrong = wrongOf(health);
-  if (health.state != CameraState::kLost) return wrong;
-  const bool tells_itself =
-      health.trouble == CameraTrouble::kHeld || health.trouble == CameraTrouble::kRefuses;
-  if (tells_itself) return wrong;
-  std::array<char, 64> silence{};
-  if (silent_for) {
-    (void)std::snprintf(silence.data(), silence.size(), "no frames since %.1f s",
-                        std::chrono::duration<double>(*silent_for).count());
-  }
-  std::string reason = silent_for                                   ? silence.data()
-                       : health.trouble == CameraTrouble::kNoAnswer ? "no answer"
-                                                                    : "no frames";
-  if (!wrong.empty()) reason += ": " + wrong;
-  return reason;
+Phrase reasonOf(const CameraHealth& health, std::optional<rt::Nanoseconds> silent_for) {
+  if (health.state != CameraState::kLost) return wrongOf(health);
+  if (silent_for) return silenceOf(health, std::chrono::duration<double>(*silent_for).count());
+  return health.trouble == CameraTrouble::kNone ? phrase<Word::kCameraNoFrames>() : wrongOf(health);
 }
 
 }  // namespace appliance

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "appliance/words/phrase.h"
 #include "rt/clock.h"
 
 namespace appliance {
@@ -45,9 +46,9 @@ struct CameraHealth {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-/// What is wrong and what to do, for a person; empty where nothing is. @p silent_for: since its
-/// last frame, of a camera that had one.
-[[nodiscard]] std::string reasonOf(const CameraHealth& health,
-                                   std::optional<rt::Nanoseconds> silent_for);
+/// What is wrong and what to do; empty if nothing is. @p silent_for: since its last frame, of a
+/// camera that had one.
+[[nodiscard]] Phrase reasonOf(const CameraHealth& health,
+                              std::optional<rt::Nanoseconds> silent_for);
 
 }  // namespace appliance

@@ -14,6 +14,7 @@ struct CameraStatus {
   CameraState state = CameraState::kConnecting;
   CameraTrouble trouble = CameraTrouble::kNone;
   std::string reason;  ///< what is wrong and what to do; empty: nothing
+  Word reason_word = Word::kNothing;
   std::uint64_t frames_lost = 0;
   std::uint64_t frames_away = 0;  ///< not taken because the camera was lost
   std::uint64_t frames_incomplete = 0;

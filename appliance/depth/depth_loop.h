@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <vector>
 
 #include "appliance/depth/depth_board.h"
@@ -20,13 +19,6 @@ struct DepthReport {
   std::optional<rt::Nanoseconds> age;  ///< since the newest picture's exposure; none: no picture
   std::vector<DepthReaderStatus> readers;
 };
-
-/// "streaming: NAME, 640x480 with colour, 30.0 Hz; 900 pictures, 0 lost", in one line, and each
-/// reader that took a picture.
-[[nodiscard]] std::string depthText(const DepthReport& report);
-
-/// What is less than asked for, for a person; empty: nothing.
-[[nodiscard]] std::string depthTrouble(const DepthReport& report);
 
 /// Puts the sensor's pictures on the board as they come.
 ///

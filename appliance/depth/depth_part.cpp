@@ -7,6 +7,7 @@
 #include "appliance/box/shared.h"
 #include "appliance/depth/depth_loop.h"
 #include "appliance/depth/depth_settings.h"
+#include "appliance/depth/depth_text.h"
 #include "hal/backends.h"
 
 namespace appliance {
@@ -40,8 +41,8 @@ class DepthPart final : public Part {
   void report(Status& status) const override {
     const DepthReport report = loop_.report();
     status.sections.push_back(sectionOf(report));
-    if (std::string trouble = depthTrouble(report); !trouble.empty())
-      status.degraded.push_back({"depth", std::move(trouble)});
+    if (const Phrase trouble = depthTrouble(report); !trouble.empty())
+      status.degraded.push_back(remarkOf("depth", trouble));
   }
 
  private:

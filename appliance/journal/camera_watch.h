@@ -20,7 +20,7 @@ class CameraWatch {
   /// Least time between two lines about one camera's lost frames.
   static constexpr rt::Nanoseconds kLossPeriod = std::chrono::seconds(5);
 
-  /// What changed since the last look: "camera 7 (cam07): no frames since 0.4 s: check its cable,
+  /// What changed since the last look: "camera 7 (cam07): no frames for 0.4 s: check its cable,
   /// its power and its switch port". Once per trouble, however long it lasts.
   /// Frames that a silent camera owes are told by its silence, not counted.
   [[nodiscard]] std::vector<std::string> look(const Status& status, rt::Timestamp now);

@@ -63,6 +63,7 @@ std::string toJson(const Status& status) {
     object["cameras"].push_back({{"name", camera.name},
                                  {"state", nameOf(camera.state)},
                                  {"reason", camera.reason},
+                                 {"reason_id", idOf(camera.reason_word)},
                                  {"frames_lost", camera.frames_lost},
                                  {"frames_away", camera.frames_away},
                                  {"frames_incomplete", camera.frames_incomplete}});

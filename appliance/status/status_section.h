@@ -7,15 +7,22 @@
 #include <variant>
 #include <vector>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 
 /// Something that is less than configured, for a person. Texts are UTF-8: D-Bus refuses others.
 struct Remark {
-  std::string key;   ///< who it is about, the same while it lasts: "panel", "camera 7"
-  std::string text;  ///< what is wrong and what to do
+  std::string key;             ///< who it is about, the same while it lasts: "panel", "camera 7"
+  std::string text;            ///< what is wrong and what to do
+  Word word = Word::kNothing;  ///< what the text says; kNothing: in a backend's own words
 
   friend bool operator==(const Remark&, const Remark&) = default;
 };
+
+[[nodiscard]] inline Remark remarkOf(std::string key, const Phrase& phrase) {
+  return {.key = std::move(key), .text = textOf(phrase), .word = phrase.word};
+}
 
 /// One figure or word of a section; its name carries the unit: "rate_hz".
 struct StatusValue {

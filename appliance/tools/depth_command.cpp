@@ -14,6 +14,7 @@
 #include "appliance/depth/depth_loop.h"
 #include "appliance/depth/depth_record.h"
 #include "appliance/depth/depth_settings.h"
+#include "appliance/depth/depth_text.h"
 #include "appliance/depth/lamp_finder.h"
 #include "appliance/depth/latency.h"
 #include "appliance/panel/panel_settings.h"

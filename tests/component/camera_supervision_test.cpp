@@ -123,18 +123,18 @@ TEST(CameraSupervision, TakesEveryCameraBackWhileTheOthersLoseNothing) {
   ASSERT_TRUE(daemon.allStoreAfter(10));
 
   rig.fault("2 kill");  // longer than its heartbeat: it forgets us
-  ASSERT_TRUE(daemon.says("camera 2 (cam02): no frames since"));
+  ASSERT_TRUE(daemon.says("camera 2 (cam02): no frames for"));
   std::this_thread::sleep_for(4s);
   rig.fault("2 revive");
   ASSERT_TRUE(daemon.says("camera 2 (cam02): a frame for every trigger again"));
 
   rig.fault("3 kill");  // shorter: it is ours all the time
-  ASSERT_TRUE(daemon.says("camera 3 (cam03): no frames since"));
+  ASSERT_TRUE(daemon.says("camera 3 (cam03): no frames for"));
   rig.fault("3 revive");
   ASSERT_TRUE(daemon.says("camera 3 (cam03): a frame for every trigger again"));
 
   rig.fault("4 reboot");  // settings and clock gone
-  ASSERT_TRUE(daemon.says("camera 4 (cam04): no frames since"));
+  ASSERT_TRUE(daemon.says("camera 4 (cam04): no frames for"));
   ASSERT_TRUE(daemon.says("camera 4 (cam04): a frame for every trigger again"));
   daemon.stop();
 
@@ -218,7 +218,7 @@ TEST(CameraSupervision, LeavesACameraToALivingControllerSaysSoAndTakesItWhenItIs
   const Rig rig(folder);
   auto foreign = std::make_unique<ForeignController>("127.0.7.3");
   Daemon daemon(folder, "kagamid");
-  ASSERT_TRUE(daemon.says("camera 3 (cam03): held by another program"));
+  ASSERT_TRUE(daemon.says("camera 3 (cam03): in use by another program"));
   foreign.reset();
   ASSERT_TRUE(daemon.says("camera 3 (cam03): a frame for every trigger again"));
   daemon.stop();
@@ -231,7 +231,7 @@ TEST(CameraSupervision, TwoDaemonsShareTheRigOnlyOneAfterTheOther) {
   auto first = std::make_unique<Daemon>(folder, "first");
   ASSERT_TRUE(first->allStoreAfter(5));
   Daemon second(folder, "second");
-  ASSERT_TRUE(second.says("camera 1 (cam01): held by another program"));
+  ASSERT_TRUE(second.says("camera 1 (cam01): in use by another program"));
   EXPECT_TRUE(second.stored().empty()) << "its triggers fire, but the cameras are not its own";
   first->stop();
   EXPECT_TRUE(second.allStoreAfter(0)) << second.output();

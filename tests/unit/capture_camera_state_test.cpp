@@ -6,27 +6,45 @@ namespace {
 
 using appliance::CameraState;
 using appliance::CameraTrouble;
-using appliance::reasonOf;
+using appliance::textOf;
+using appliance::Word;
 using std::chrono::milliseconds;
+
+std::string reasonOf(const appliance::CameraHealth& health,
+                     std::optional<rt::Nanoseconds> silent_for) {
+  return textOf(appliance::reasonOf(health, silent_for));
+}
 
 TEST(CameraReason, OfADeadCameraTellsSinceWhenAndWhatToCheck) {
   EXPECT_EQ(reasonOf({CameraState::kLost, CameraTrouble::kNoAnswer}, milliseconds(400)),
-            "no frames since 0.4 s: check its cable, its power and its switch port");
+            "no frames for 0.4 s: check its cable, its power and its switch port");
   EXPECT_EQ(reasonOf({CameraState::kLost, CameraTrouble::kNoAnswer}, std::nullopt),
             "no answer: check its cable, its power and its switch port");
 }
 
 TEST(CameraReason, OfASilenceWithoutAKnownCauseIsTheSilence) {
   EXPECT_EQ(reasonOf({CameraState::kLost, CameraTrouble::kNone}, milliseconds(125)),
-            "no frames since 0.1 s");
+            "no frames for 0.1 s");
+}
+
+TEST(CameraReason, OfASilentCameraThatAnswersNamesItsWire) {
+  EXPECT_EQ(reasonOf({CameraState::kLost, CameraTrouble::kSilent}, milliseconds(4000)),
+            "no frames for 4.0 s although it answers: check its trigger wire");
+  EXPECT_EQ(appliance::reasonOf({CameraState::kLost, CameraTrouble::kSilent}, {}).word,
+            Word::kCameraSilentFromStart);
+}
+
+TEST(CameraReason, OfALostCameraWhoseFramesAreDamagedNamesThem) {
+  EXPECT_EQ(
+      appliance::reasonOf({CameraState::kLost, CameraTrouble::kDamaged}, milliseconds(900)).word,
+      Word::kCameraLostDamaged);
 }
 
 TEST(CameraReason, NamesWhoHoldsTheCameraWhereThatIsKnown) {
   EXPECT_EQ(reasonOf({CameraState::kLost, CameraTrouble::kHeld, "10.0.0.5"}, milliseconds(400)),
-            "held by another program at 10.0.0.5: end that program; the camera then comes by "
-            "itself");
+            "in use by another program (10.0.0.5): close it, the camera reconnects automatically");
   EXPECT_EQ(reasonOf({CameraState::kLost, CameraTrouble::kHeld}, std::nullopt),
-            "held by another program: end that program; the camera then comes by itself");
+            "in use by another program: close it, the camera reconnects automatically");
 }
 
 TEST(CameraReason, IsTheCamerasOwnWhereItRefuses) {

@@ -1,14 +1,17 @@
+#include "appliance/depth/depth_text.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "appliance/depth/depth_loop.h"
 
 namespace {
 
 using appliance::DepthReport;
 using appliance::depthText;
-using appliance::depthTrouble;
 using testing::HasSubstr;
+
+std::string troubleText(const DepthReport& report) {
+  return textOf(appliance::depthTrouble(report));
+}
 
 TEST(DepthText, TellsWhatStreamsInOneLine) {
   DepthReport report{.sensor = {.state = hal::DepthState::kStreaming,
@@ -21,7 +24,7 @@ TEST(DepthText, TellsWhatStreamsInOneLine) {
                      .rate_hz = 29.97};
   EXPECT_EQ(depthText(report),
             "streaming: Acme RGB-D, 640x480 with colour, 30.0 Hz; 900 pictures, 2 lost");
-  EXPECT_EQ(depthTrouble(report), "");
+  EXPECT_EQ(troubleText(report), "");
   report.sensor.returns = 3;
   report.sensor.without_colour = 4;
   EXPECT_THAT(depthText(report), HasSubstr("2 lost, 4 without their colour; came back 3 times"));
@@ -31,7 +34,7 @@ TEST(DepthText, HasNoNumbersOfASensorThatWasNeverThere) {
   DepthReport report;
   report.sensor.message = "no depth sensor found: plug it in";
   EXPECT_EQ(depthText(report), "connecting");
-  EXPECT_EQ(depthTrouble(report), "no depth sensor found: plug it in");
+  EXPECT_EQ(troubleText(report), "no depth sensor found: plug it in");
 }
 
 TEST(DepthText, NamesEachReaderThatTookAPicture) {
@@ -55,7 +58,7 @@ TEST(DepthText, SaysHowOldTheLastPictureOfALostSensorIs) {
 TEST(DepthText, SaysThatARecordingIsOver) {
   DepthReport report{.sensor = {.state = hal::DepthState::kEnded, .name = "a.oni", .frames = 60}};
   EXPECT_THAT(depthText(report), HasSubstr("ended: a.oni"));
-  EXPECT_THAT(depthTrouble(report), HasSubstr("depth_sensor.repeat"));
+  EXPECT_THAT(troubleText(report), HasSubstr("depth_sensor.repeat"));
 }
 
 }  // namespace
