@@ -62,10 +62,7 @@ Opened<ButtonPanel> openButtonPanel(std::string_view backend, const PanelSetting
     return std::make_unique<emulated::ScriptedPanel>(std::move(*panel));
   }
   if (backend == "gpiod") {
-    auto opened = gpiod::openButtonPanel({.button_prefix = settings.button_prefix,
-                                          .lamp_prefix = settings.lamp_prefix,
-                                          .active_low = settings.active_low,
-                                          .debounce = settings.debounce});
+    auto opened = gpiod::openButtonPanel(settings);
     if (!opened) return std::unexpected(std::move(opened.error()));
     for (std::string& note : opened->notes) notes.push_back(std::move(note));
     return std::move(opened->panel);
@@ -75,14 +72,7 @@ Opened<ButtonPanel> openButtonPanel(std::string_view backend, const PanelSetting
 
 Opened<DepthSensor> openDepthSensor(std::string_view backend, const DepthSensorSettings& settings) {
   if (backend == "openni") {
-    return as<DepthSensor>(openni::OpenniSensor::open({.source = settings.source,
-                                                       .drivers = settings.drivers,
-                                                       .width_px = settings.width_px,
-                                                       .height_px = settings.height_px,
-                                                       .rate_hz = settings.rate_hz,
-                                                       .colour = settings.colour,
-                                                       .latency = settings.latency,
-                                                       .repeat = settings.repeat}));
+    return as<DepthSensor>(openni::OpenniSensor::open(settings));
   }
   if (backend == "folder") {
     return as<DepthSensor>(

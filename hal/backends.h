@@ -48,30 +48,11 @@ struct TriggerLineSettings {
 /// A GPIO line by its name, whatever the trigger line's backend.
 [[nodiscard]] Opened<EdgeInput> openEdgeInput(const std::string& line, bool active_low);
 
-struct PanelSettings {
-  std::string script;         ///< "scripted": its file
-  std::string button_prefix;  ///< "gpiod": of the names of the buttons' lines
-  std::string lamp_prefix;
-  bool active_low = true;
-  std::chrono::milliseconds debounce{};
-};
-
 /// backend "scripted", "terminal" (keys of this terminal) or "gpiod". What opens with less than it
 /// could have adds a line for a person to @p notes.
 [[nodiscard]] Opened<ButtonPanel> openButtonPanel(std::string_view backend,
                                                   const PanelSettings& settings,
                                                   std::vector<std::string>& notes);
-
-struct DepthSensorSettings {
-  std::string source;   ///< "openni": URI or .oni file, empty: the first sensor; "folder": its path
-  std::string drivers;  ///< "openni": folder of OpenNI2 drivers; empty: the system's
-  std::uint32_t width_px = 640;
-  std::uint32_t height_px = 480;
-  std::uint32_t rate_hz = 30;
-  bool colour = true;
-  rt::Nanoseconds latency{};  ///< of a sensor, not of a recording
-  bool repeat = true;         ///< a recording begins anew at its end
-};
 
 /// backend "openni" or "folder". A sensor that is not there is no error: it is looked for.
 [[nodiscard]] Opened<DepthSensor> openDepthSensor(std::string_view backend,

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "rt/annotations.h"
@@ -33,6 +35,16 @@ struct ButtonEvent {
 };
 
 enum class Lamp : std::uint8_t { kLive, kDelayed, kFrozen };
+
+/// What a panel is opened with; each backend takes its own.
+struct PanelSettings {
+  std::string script;                     ///< "scripted": its file
+  std::string button_prefix = "button-";  ///< "gpiod": a button's line is named this and its name
+  std::string lamp_prefix = "lamp-";      ///< "gpiod": and live, delayed or frozen
+  bool active_low = true;                 ///< "gpiod": a pressed button is the low level
+  std::chrono::milliseconds debounce{10};
+  bool operator==(const PanelSettings&) const = default;
+};
 
 /// The buttons and lamps of one box.
 ///

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -54,6 +55,20 @@ struct DepthStatus {
   std::uint64_t without_colour = 0;  ///< delivered, but colour should have come and did not
   std::uint64_t returns = 0;         ///< how often it came back after it was lost
   double drift_ppm = 0;              ///< how much faster than ours its clock runs
+};
+
+/// What a sensor or a recording is opened with.
+struct DepthSensorSettings {
+  std::string source;   ///< "openni": URI or .oni file, empty: the first sensor; "folder": its path
+  std::string drivers;  ///< "openni": folder of OpenNI2 drivers; empty: the system's
+  std::uint32_t width_px = 640;
+  std::uint32_t height_px = 480;
+  std::uint32_t rate_hz = 30;
+  bool colour = true;
+  rt::Nanoseconds latency =
+      std::chrono::milliseconds(40);  ///< of a sensor: from exposure to arrival
+  bool repeat = true;                 ///< a recording begins again at its end
+  bool operator==(const DepthSensorSettings&) const = default;
 };
 
 /// An RGB-D sensor that looks at the athlete, or a recording of one.

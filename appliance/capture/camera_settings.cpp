@@ -7,7 +7,7 @@
 namespace appliance {
 namespace {
 
-double triggerDelay_us(const Config::Cameras& config, std::size_t camera) {
+double triggerDelay_us(const CamerasSettings& config, std::size_t camera) {
   return config.opto_delay_us.empty() ? 0 : commonDelay_us(config) - config.opto_delay_us[camera];
 }
 
@@ -25,12 +25,12 @@ hal::ResendPolicy policyOf(hal::ResendPolicy policy, double rate_hz) {
 
 }  // namespace
 
-double commonDelay_us(const Config::Cameras& config) {
+double commonDelay_us(const CamerasSettings& config) {
   return config.opto_delay_us.empty() ? 0 : std::ranges::max(config.opto_delay_us);
 }
 
 hal::CameraProfile profileOf(const Config& site, const RigCamera& camera, std::size_t index) {
-  const Config::Cameras& config = site.cameras;
+  const CamerasSettings& config = site.cameras;
   std::vector<hal::ModelResendPolicy> by_model = site.resend.models;
   for (hal::ModelResendPolicy& own : by_model)
     own.policy = policyOf(own.policy, site.trigger.rate_hz);

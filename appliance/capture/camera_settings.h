@@ -12,7 +12,7 @@ namespace appliance {
 /// The configuration in a camera's own terms. All pure.
 
 /// From the edge on the wire to the exposure, in every camera: the slowest opto-isolator's.
-[[nodiscard]] double commonDelay_us(const Config::Cameras& config);
+[[nodiscard]] double commonDelay_us(const CamerasSettings& config);
 
 /// The settings of camera @p index of the rig. A resend.frame_retention_us of 0 becomes four fifths
 /// of the trigger's period; a packet delay below 0, not planned yet, becomes none.

@@ -16,7 +16,7 @@
 namespace appliance {
 namespace {
 
-TriggerTiming timingOf(const Config::Trigger& config) {
+TriggerTiming timingOf(const TriggerSettings& config) {
   return {.period = periodOf(config.rate_hz),
           .pulse_width = microseconds(config.pulse_width_us),
           .genlock = config.genlock,
@@ -88,7 +88,7 @@ class TriggerPart final : public Part {
 }  // namespace
 
 MadePart makeTriggerPart(const Shared& shared) {
-  const Config::Trigger& config = shared.config.trigger;
+  const TriggerSettings& config = shared.config.trigger;
   auto line = openTriggerLine(config);
   if (!line) return std::unexpected(line.error());
   std::unique_ptr<hal::EdgeInput> loopback;

@@ -8,7 +8,7 @@
 namespace appliance {
 
 std::expected<std::unique_ptr<hal::TriggerLine>, std::string> openTriggerLine(
-    const Config::Trigger& config) {
+    const TriggerSettings& config) {
   return hal::openTriggerLine(config.backend,
                               {.wire_port = static_cast<std::uint16_t>(config.wire_port),
                                .lines = config.lines,
@@ -16,7 +16,7 @@ std::expected<std::unique_ptr<hal::TriggerLine>, std::string> openTriggerLine(
 }
 
 std::expected<std::unique_ptr<hal::EdgeInput>, std::string> openLoopback(
-    const Config::Trigger& config, hal::TriggerLine& line) {
+    const TriggerSettings& config, hal::TriggerLine& line) {
   auto input = hal::openEdgeInput(config.loopback_line, config.loopback_active_low);
   if (!input) return std::unexpected(std::move(input.error()));
   if (auto wired = checkLoopback(line, **input); !wired)

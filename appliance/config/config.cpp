@@ -4,194 +4,17 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <set>
 #include <utility>
 
-#include <arpa/inet.h>
-
-#include "appliance/config/toml_reader.h"
+#include "appliance/config/section.h"
 #include "rt/printable.h"
 
 namespace appliance {
 namespace {
 
-/// Reads the keys of one table into their fields, absent ones stay; every key is named once.
-class Section {
- public:
-  /// @p all collects every key as "section.key".
-  Section(TomlTable table, std::string path, std::vector<std::string>& all)
-      : table_(std::move(table)), path_(std::move(path)), all_(&all) {}
-
-  [[nodiscard]] Section sub(std::string_view key) {
-    own_keys_.push_back(key);
-    return {table_.table(key), path_ + std::string(key) + ".", *all_};
-  }
-  /// The tables of `[[key]]`, in the file's order.
-  [[nodiscard]] std::vector<Section> subs(std::string_view key, std::vector<std::string>& keys) {
-    own_keys_.push_back(key);
-    std::vector<Section> found;
-    for (TomlTable& table : table_.tables(key))
-      found.push_back({std::move(table), path_ + std::string(key) + ".", keys});
-    return found;
-  }
-
-  void text(std::string_view key, std::string& value) { value = named(key).textOr(key, value); }
-  /// A text that must not be empty.
-  void word(std::string_view key, std::string& value) {
-    text(key, value);
-    if (value.empty()) fail(key, std::string(key) + " must not be empty");
-  }
-  void texts(std::string_view key, std::vector<std::string>& value) {
-    value = named(key).textsOr(key, value);
-  }
-  void flag(std::string_view key, bool& value) { value = named(key).flagOr(key, value); }
-  void number(std::string_view key, double& value, const NumberRange& range) {
-    value = named(key).numberOr(key, value, range);
-  }
-  void numbers(std::string_view key, std::vector<double>& value, const NumberRange& range) {
-    value = named(key).numberListOr(key, value, range);
-  }
-  void integer(std::string_view key, std::uint32_t& value, const IntegerRange& range) {
-    value = static_cast<std::uint32_t>(named(key).integerOr(key, value, range));
-  }
-  void integer(std::string_view key, int& value, const IntegerRange& range) {
-    value = static_cast<int>(named(key).integerOr(key, value, range));
-  }
-  /// One of the names in @p choices, in the order of the values of the enumeration.
-  template <class Enum, std::size_t N>
-  void choice(std::string_view key, Enum& value, const std::array<std::string_view, N>& choices) {
-    const std::string name = named(key).textOr(key, choices[static_cast<std::size_t>(value)]);
-    const auto* found = std::ranges::find(choices, name);
-    if (found != choices.end()) {
-      value = static_cast<Enum>(found - choices.begin());
-      return;
-    }
-    std::string known;
-    for (const std::string_view one : choices) known.append(known.empty() ? "" : ", ").append(one);
-    fail(key, std::string(key) + " must be one of " + known + ", not \"" + name + "\"");
-  }
-
-  [[nodiscard]] TomlTable& named(std::string_view key) {
-    own_keys_.push_back(key);
-    all_->push_back(path_ + std::string(key));
-    return table_;
-  }
-  void fail(std::string_view key, const std::string& message) const { table_.fail(key, message); }
-
-  /// A key of earlier versions: it is accepted, has no effect, and a line says so.
-  void retired(std::string_view key, std::vector<std::string>& warnings, const char* because) {
-    own_keys_.push_back(key);
-    if (!table_.has(key)) return;
-    warnings.push_back(path_ + std::string(key) + " has no effect any more (" + because +
-                       "): remove it from the configuration");
-  }
-
-  /// After the last key: every other one is refused.
-  void end() const { table_.allowKeys(own_keys_); }
-
- private:
-  TomlTable table_;
-  std::string path_;
-  std::vector<std::string>* all_;
-  std::vector<std::string_view> own_keys_;
-};
-
-constexpr std::array<std::string_view, 5> kPixelFormats = {"BayerRG8", "BayerGB8", "BayerGR8",
-                                                           "BayerBG8", "Mono8"};
 constexpr std::array<std::string_view, 3> kPolicies = {"other", "fifo", "rr"};
 
-bool isIpv4(const std::string& text) {
-  in_addr parsed{};
-  return inet_pton(AF_INET, text.c_str(), &parsed) == 1;
-}
-
-void readCameras(Section section, Config::Cameras& cameras) {
-  section.word("backend", cameras.backend);
-  section.texts("addresses", cameras.addresses);
-  section.word("trigger_source", cameras.trigger_source);
-  section.choice("pixel_format", cameras.pixel_format, kPixelFormats);
-  section.number("exposure_us", cameras.exposure_us, {1, 1e6, "us"});
-  section.number("gain_db", cameras.gain_db, {0, 48, "dB"});
-  if (TomlTable& table = section.named("white_balance_rgb"); table.has("white_balance_rgb"))
-    cameras.white_balance_rgb = table.numbers<3>("white_balance_rgb", {0.1, 16});
-  section.integer("packet_size_bytes", cameras.packet_size_bytes, {576, 16000, "bytes"});
-  section.integer("packet_delay_ns", cameras.packet_delay_ns, {-1, 1'000'000, "ns"});
-  section.integer("socket_buffer_bytes", cameras.socket_buffer_bytes,
-                  {64 * 1024, 256 * 1024 * 1024, "bytes"});
-  section.numbers("opto_delay_us", cameras.opto_delay_us, {0, 1000, "us"});
-  section.end();
-
-  std::set<std::string> seen;
-  for (const std::string& address : cameras.addresses) {
-    if (!isIpv4(address))
-      section.fail("addresses", "\"" + address + "\" is not an IPv4 address such as 192.168.1.20");
-    if (!seen.insert(address).second)
-      section.fail("addresses", address + " stands twice; every camera needs its own address");
-  }
-}
-
-void readNetwork(Section section, Config::Network& network) {
-  section.integer("uplinks", network.uplinks, {1, 64, "uplinks"});
-  section.number("uplink_gbps", network.uplink_gbps, {0.1, 400, "Gb/s"});
-  section.number("camera_link_gbps", network.camera_link_gbps, {0.1, 100, "Gb/s"});
-  section.end();
-}
-
-void readPolicy(Section& section, hal::ResendPolicy& policy) {
-  section.flag("enabled", policy.enabled);
-  // Aravis waits in whole milliseconds, and below one not at all: a receive thread would spin.
-  section.integer("packet_timeout_us", policy.packet_timeout_us, {1000, 1'000'000, "us"});
-  section.integer("initial_packet_timeout_us", policy.initial_packet_timeout_us,
-                  {0, 1'000'000, "us"});
-  section.integer("frame_retention_us", policy.frame_retention_us, {0, 1'000'000, "us"});
-  section.number("request_ratio", policy.request_ratio, {0, 2});
-  if (policy.frame_retention_us != 0 && policy.frame_retention_us < policy.packet_timeout_us)
-    section.fail("frame_retention_us",
-                 "frame_retention_us must not be below packet_timeout_us: no packet would be "
-                 "asked for again");
-}
-
-void readResend(Section section, Config::Resend& resend) {
-  readPolicy(section, resend.policy);
-  std::vector<std::string> not_listed;
-  const auto models = section.subs("model", not_listed);
-  if (!models.empty()) resend.models.clear();
-  for (Section model : models) {
-    hal::ModelResendPolicy own{.model = {}, .policy = resend.policy};
-    model.word("name", own.model);
-    readPolicy(model, own.policy);
-    model.end();
-    if (std::ranges::find(resend.models, own.model, &hal::ModelResendPolicy::model) !=
-        resend.models.end())
-      model.fail("name", "\"" + own.model + "\" stands twice; give each model once");
-    resend.models.push_back(std::move(own));
-  }
-  section.end();
-}
-
-void readTrigger(Section section, Config::Trigger& trigger) {
-  section.word("backend", trigger.backend);
-  section.number("rate_hz", trigger.rate_hz, {0.1, 1000, "Hz"});
-  section.number("pulse_width_us", trigger.pulse_width_us, {1, 1e6, "us"});
-  section.integer("wire_port", trigger.wire_port, {1, 65535});
-  section.texts("lines", trigger.lines);
-  section.flag("active_low", trigger.active_low);
-  section.text("loopback_line", trigger.loopback_line);
-  section.flag("loopback_active_low", trigger.loopback_active_low);
-  section.flag("genlock", trigger.genlock);
-  section.number("genlock_margin_us", trigger.genlock_margin_us, {0, 20000, "us"});
-  section.end();
-}
-
-void readHistory(Section section, Config::History& history, std::vector<std::string>& warnings) {
-  section.integer("sets", history.sets, {2, 60'000, "frame sets"});  // kMostSlots, and the others
-  section.integer("in_flight", history.in_flight, {2, 64, "slots"});
-  section.retired("reserve", warnings, "each reader of the history has its own slots");
-  section.flag("size_down", history.size_down);
-  section.end();
-}
-
-void readDisplay(Section section, Config::Display& display) {
+void read(Section section, Config::Display& display) {
   section.word("backend", display.backend);
   section.text("device", display.device);
   section.text("mode", display.mode);
@@ -210,32 +33,7 @@ void readDisplay(Section section, Config::Display& display) {
   section.end();
 }
 
-void readPanel(Section section, Config::Panel& panel) {
-  section.word("backend", panel.backend);
-  section.text("script", panel.script);
-  section.text("button_prefix", panel.button_prefix);
-  section.text("lamp_prefix", panel.lamp_prefix);
-  section.flag("active_low", panel.active_low);
-  section.integer("debounce_ms", panel.debounce_ms, {1, 100, "ms"});
-  section.end();
-  if (panel.button_prefix == panel.lamp_prefix)
-    section.fail("lamp_prefix", "lamp_prefix must differ from button_prefix");
-}
-
-void readDepthSensor(Section section, Config::DepthSensor& sensor) {
-  section.word("backend", sensor.backend);
-  section.text("source", sensor.source);
-  section.text("drivers", sensor.drivers);
-  section.integer("width_px", sensor.width_px, {64, 4096, "px"});
-  section.integer("height_px", sensor.height_px, {64, 4096, "px"});
-  section.integer("rate_hz", sensor.rate_hz, {1, 240, "Hz"});
-  section.flag("colour", sensor.colour);
-  section.number("latency_ms", sensor.latency_ms, {0, 1000, "ms"});
-  section.flag("repeat", sensor.repeat);
-  section.end();
-}
-
-void readDirector(Section section, Config::Director& director) {
+void read(Section section, Config::Director& director) {
   section.numbers("delay_ladder_s", director.delay_ladder_s, {0.01, 3600, "s"});
   section.number("sweep_views_per_s", director.sweep_views_per_s, {0.1, 240, "views/s"});
   section.end();
@@ -244,7 +42,7 @@ void readDirector(Section section, Config::Director& director) {
     section.fail("delay_ladder_s", "delay_ladder_s must be one or more rising delays");
 }
 
-void readRecord(Section section, Config::Record& record) {
+void read(Section section, Config::Record& record) {
   section.text("directory", record.directory);
   section.number("video_hz", record.video_hz, {1, 240, "Hz"});
   section.integer("video_width_px", record.video_width_px, {64, 7680, "px"});
@@ -265,7 +63,7 @@ void readSchedule(Section section, ThreadSchedule& schedule) {
     section.fail("priority", "priority must be 0 under the policy other");
 }
 
-void readRealtime(Section section, Config::Realtime& realtime) {
+void read(Section section, Config::Realtime& realtime) {
   section.flag("lock_memory", realtime.lock_memory);
   section.flag("require", realtime.require);
   readSchedule(section.sub("trigger"), realtime.trigger);
@@ -273,6 +71,23 @@ void readRealtime(Section section, Config::Realtime& realtime) {
   readSchedule(section.sub("render"), realtime.render);
   readSchedule(section.sub("draw"), realtime.draw);
   readSchedule(section.sub("panel"), realtime.panel);
+  section.end();
+}
+
+void read(Section section, Config::Rig& rig) {
+  section.word("file", rig.file);
+  section.end();
+}
+
+void read(Section section, Config::State& state) {
+  section.word("directory", state.directory);
+  section.text("trace", state.trace);
+  section.end();
+}
+
+void read(Section section, Config::Control& control) {
+  section.word("bus", control.bus);
+  section.word("name", control.name);
   section.end();
 }
 
@@ -298,35 +113,13 @@ void checkTogether(const TomlTable& root, const Config& config) {
 
 /// Reads what @p root holds over @p config; every key that exists, in the file's order.
 std::vector<std::string> readAll(const TomlTable& root, Config& config) {
-  std::vector<std::string> keys;
-  Section sections(root, "", keys);
-  Section rig = sections.sub("rig");
-  rig.word("file", config.rig.file);
-  rig.end();
-  readCameras(sections.sub("cameras"), config.cameras);
-  readNetwork(sections.sub("network"), config.network);
-  readResend(sections.sub("resend"), config.resend);
-  Section light = sections.sub("light");
-  light.number("mains_hz", config.light.mains_hz, {10, 100, "Hz"});
-  light.end();
-  readTrigger(sections.sub("trigger"), config.trigger);
-  readHistory(sections.sub("history"), config.history, config.warnings);
-  readDisplay(sections.sub("display"), config.display);
-  readPanel(sections.sub("panel"), config.panel);
-  readDepthSensor(sections.sub("depth_sensor"), config.depth_sensor);
-  readDirector(sections.sub("director"), config.director);
-  readRecord(sections.sub("record"), config.record);
-  readRealtime(sections.sub("realtime"), config.realtime);
-  Section state = sections.sub("state");
-  state.word("directory", config.state.directory);
-  state.text("trace", config.state.trace);
-  state.end();
-  Section control = sections.sub("control");
-  control.word("bus", config.control.bus);
-  control.word("name", config.control.name);
-  control.end();
+  ConfigReading reading;
+  Section sections(root, "", reading);
+  visitSections(config,
+                [&](std::string_view name, auto& settings) { read(sections.sub(name), settings); });
   sections.end();
-  return keys;
+  for (std::string& warning : reading.warnings) config.warnings.push_back(std::move(warning));
+  return std::move(reading.keys);
 }
 
 std::string inQuotes(std::string_view text) {

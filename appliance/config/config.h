@@ -1,81 +1,27 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <expected>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "appliance/capture/capture_settings.h"
 #include "appliance/config/thread_schedule.h"
-#include "hal/pixel_format.h"
-#include "hal/resend_policy.h"
+#include "appliance/depth/depth_settings.h"
+#include "appliance/light/light_settings.h"
+#include "appliance/network/network_settings.h"
+#include "appliance/panel/panel_settings.h"
 
 namespace appliance {
 
-/// Everything a site sets. The defaults here are the values in the installed
+/// Everything a site sets. A folder that has settings owns their struct; what stands here belongs
+/// to the box as a whole. The defaults here are the values in the installed
 /// appliance/config/kagamid.toml, which documents every key; a test holds the two equal.
 struct Config {
   struct Rig {
     std::string file = "/etc/kagami/rig.toml";
     bool operator==(const Rig&) const = default;
-  };
-
-  struct Cameras {
-    std::string backend = "aravis";
-    std::vector<std::string> addresses;  ///< IPv4, in the order of the rig file
-    std::string trigger_source = "Line1";
-    hal::PixelFormat pixel_format = hal::PixelFormat::kBayerRG8;
-    double exposure_us = 1000;
-    double gain_db = 0;
-    std::array<double, 3> white_balance_rgb{1, 1, 1};
-    std::uint32_t packet_size_bytes = 9000;
-    std::int32_t packet_delay_ns = -1;  ///< below 0: by the network plan
-    std::uint32_t socket_buffer_bytes = 4U << 20;
-    std::vector<double> opto_delay_us;  ///< one per camera; empty: all the same
-    bool operator==(const Cameras&) const = default;
-  };
-
-  /// The cameras' way into this machine.
-  struct Network {
-    std::uint32_t uplinks = 2;
-    double uplink_gbps = 10;
-    double camera_link_gbps = 1;
-    bool operator==(const Network&) const = default;
-  };
-
-  /// Packets that did not arrive; frame_retention_us 0: four fifths of the trigger's period.
-  struct Resend {
-    hal::ResendPolicy policy{.frame_retention_us = 0};
-    std::vector<hal::ModelResendPolicy> models;  ///< for these instead
-    bool operator==(const Resend&) const = default;
-  };
-
-  /// What lights the hall.
-  struct Light {
-    double mains_hz = 50;
-    bool operator==(const Light&) const = default;
-  };
-
-  struct Trigger {
-    std::string backend = "emulated";
-    double rate_hz = 40;
-    double pulse_width_us = 100;
-    std::uint32_t wire_port = 3990;  ///< of the emulator, on this machine
-    std::vector<std::string> lines;  ///< GPIO lines by name
-    bool active_low = false;
-    std::string loopback_line;  ///< empty: the trigger's edges are not measured
-    bool loopback_active_low = false;
-    bool genlock = true;              ///< in phase with the screen where the rates allow it
-    double genlock_margin_us = 1500;  ///< frame_ready to the latest start of its warp
-    bool operator==(const Trigger&) const = default;
-  };
-
-  struct History {
-    std::uint32_t sets = 300;
-    std::uint32_t in_flight = 8;  ///< slots per camera
-    bool size_down = true;
-    bool operator==(const History&) const = default;
   };
 
   struct Display {
@@ -92,30 +38,6 @@ struct Config {
     std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
     bool flicker_compensation = false;
     bool operator==(const Display&) const = default;
-  };
-
-  struct Panel {
-    std::string backend = "none";
-    std::string script;
-    std::string button_prefix = "button-";
-    std::string lamp_prefix = "lamp-";
-    bool active_low = true;
-    std::uint32_t debounce_ms = 10;
-    bool operator==(const Panel&) const = default;
-  };
-
-  /// What looks at the athlete's distance.
-  struct DepthSensor {
-    std::string backend = "none";
-    std::string source;   ///< empty: the first sensor
-    std::string drivers;  ///< folder; empty: the system's
-    std::uint32_t width_px = 640;
-    std::uint32_t height_px = 480;
-    std::uint32_t rate_hz = 30;
-    bool colour = true;
-    double latency_ms = 40;  ///< from exposure to arrival
-    bool repeat = true;      ///< a recording
-    bool operator==(const DepthSensor&) const = default;
   };
 
   struct Director {
@@ -155,15 +77,15 @@ struct Config {
   };
 
   Rig rig;
-  Cameras cameras;
-  Network network;
-  Resend resend;
-  Light light;
-  Trigger trigger;
-  History history;
+  CamerasSettings cameras;
+  NetworkSettings network;
+  ResendSettings resend;
+  LightSettings light;
+  TriggerSettings trigger;
+  HistorySettings history;
   Display display;
-  Panel panel;
-  DepthSensor depth_sensor;
+  PanelSettings panel;
+  DepthSettings depth_sensor;
   Director director;
   Record record;
   Realtime realtime;
@@ -172,6 +94,27 @@ struct Config {
   std::vector<std::string> warnings;  ///< what was read and has no effect, one line each
   bool operator==(const Config&) const = default;
 };
+
+/// Calls @p visit with the name and the settings of each section, in the order of the installed
+/// file. The folder of the settings has their read(Section, Settings&).
+template <class Visitor>
+void visitSections(Config& config, Visitor&& visit) {
+  visit("rig", config.rig);
+  visit("cameras", config.cameras);
+  visit("network", config.network);
+  visit("resend", config.resend);
+  visit("light", config.light);
+  visit("trigger", config.trigger);
+  visit("history", config.history);
+  visit("display", config.display);
+  visit("panel", config.panel);
+  visit("depth_sensor", config.depth_sensor);
+  visit("director", config.director);
+  visit("record", config.record);
+  visit("realtime", config.realtime);
+  visit("state", config.state);
+  visit("control", config.control);
+}
 
 /// The defaults, then the file's keys, then @p overrides: "section.key=value" with the value as
 /// in TOML; a value that is not TOML is taken as text, so that a shell needs no second quotes.

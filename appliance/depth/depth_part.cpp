@@ -54,9 +54,9 @@ class DepthPart final : public Part {
 }  // namespace
 
 MadePart makeDepthPart(const Shared& shared) {
-  const Config::DepthSensor& config = shared.config.depth_sensor;
+  const DepthSettings& config = shared.config.depth_sensor;
   if (config.backend == "none") return nullptr;
-  auto sensor = hal::openDepthSensor(config.backend, depthSensorSettings(config));
+  auto sensor = hal::openDepthSensor(config.backend, config.device);
   if (!sensor) {
     shared.remarks.add("depth", sensor.error() + "; the box runs without its depth sensor");
     return nullptr;

@@ -1,18 +1,20 @@
 #include "appliance/depth/depth_settings.h"
 
-#include <cmath>
+#include "appliance/config/section.h"
 
 namespace appliance {
 
-hal::DepthSensorSettings depthSensorSettings(const Config::DepthSensor& config) {
-  return {.source = config.source,
-          .drivers = config.drivers,
-          .width_px = config.width_px,
-          .height_px = config.height_px,
-          .rate_hz = config.rate_hz,
-          .colour = config.colour,
-          .latency = rt::Nanoseconds(std::llround(config.latency_ms * 1e6)),
-          .repeat = config.repeat};
+void read(Section section, DepthSettings& sensor) {
+  section.word("backend", sensor.backend);
+  section.text("source", sensor.device.source);
+  section.text("drivers", sensor.device.drivers);
+  section.integer("width_px", sensor.device.width_px, {64, 4096, "px"});
+  section.integer("height_px", sensor.device.height_px, {64, 4096, "px"});
+  section.integer("rate_hz", sensor.device.rate_hz, {1, 240, "Hz"});
+  section.flag("colour", sensor.device.colour);
+  section.milliseconds("latency_ms", sensor.device.latency, {0, 1000, "ms"});
+  section.flag("repeat", sensor.device.repeat);
+  section.end();
 }
 
 }  // namespace appliance

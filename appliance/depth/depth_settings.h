@@ -1,11 +1,20 @@
 #pragma once
 
-#include "appliance/config/config.h"
-#include "hal/backends.h"
+#include <string>
+
+#include "hal/depth_sensor.h"
 
 namespace appliance {
 
-/// The configuration in the sensor's own terms.
-[[nodiscard]] hal::DepthSensorSettings depthSensorSettings(const Config::DepthSensor& config);
+class Section;
+
+/// What looks at the athlete's distance: section `[depth_sensor]`.
+struct DepthSettings {
+  std::string backend = "none";
+  hal::DepthSensorSettings device;
+  bool operator==(const DepthSettings&) const = default;
+};
+
+void read(Section section, DepthSettings& sensor);
 
 }  // namespace appliance

@@ -54,10 +54,10 @@ class PanelPart final : public Part {
 }  // namespace
 
 MadePart makePanelPart(const Shared& shared) {
-  const Config::Panel& config = shared.config.panel;
+  const PanelSettings& config = shared.config.panel;
   if (config.backend == "none") return nullptr;
   std::vector<std::string> notes;
-  auto panel = hal::openButtonPanel(config.backend, panelSettings(config), notes);
+  auto panel = hal::openButtonPanel(config.backend, config.device, notes);
   for (std::string& note : notes) shared.remarks.add("panel", std::move(note));
   if (!panel) {
     shared.remarks.add("panel", panel.error() + "; the box runs without its panel");

@@ -1,15 +1,19 @@
 #include "appliance/panel/panel_settings.h"
 
-#include <chrono>
+#include "appliance/config/section.h"
 
 namespace appliance {
 
-hal::PanelSettings panelSettings(const Config::Panel& config) {
-  return {.script = config.script,
-          .button_prefix = config.button_prefix,
-          .lamp_prefix = config.lamp_prefix,
-          .active_low = config.active_low,
-          .debounce = std::chrono::milliseconds(config.debounce_ms)};
+void read(Section section, PanelSettings& panel) {
+  section.word("backend", panel.backend);
+  section.text("script", panel.device.script);
+  section.text("button_prefix", panel.device.button_prefix);
+  section.text("lamp_prefix", panel.device.lamp_prefix);
+  section.flag("active_low", panel.device.active_low);
+  section.milliseconds("debounce_ms", panel.device.debounce, {1, 100, "ms"});
+  section.end();
+  if (panel.device.button_prefix == panel.device.lamp_prefix)
+    section.fail("lamp_prefix", "lamp_prefix must differ from button_prefix");
 }
 
 }  // namespace appliance

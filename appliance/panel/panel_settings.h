@@ -1,11 +1,20 @@
 #pragma once
 
-#include "appliance/config/config.h"
-#include "hal/backends.h"
+#include <string>
+
+#include "hal/button_panel.h"
 
 namespace appliance {
 
-/// The configuration in the panel's own terms.
-[[nodiscard]] hal::PanelSettings panelSettings(const Config::Panel& config);
+class Section;
+
+struct PanelSettings {
+  std::string backend = "none";
+  hal::PanelSettings device;
+  bool operator==(const PanelSettings&) const = default;
+};
+
+/// Reads `[panel]`.
+void read(Section section, PanelSettings& panel);
 
 }  // namespace appliance

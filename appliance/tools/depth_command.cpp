@@ -41,8 +41,8 @@ Config configOf(const Options& options) {
   return *config;
 }
 
-std::unique_ptr<hal::DepthSensor> sensorOf(const Config::DepthSensor& config) {
-  auto sensor = hal::openDepthSensor(config.backend, depthSensorSettings(config));
+std::unique_ptr<hal::DepthSensor> sensorOf(const DepthSettings& config) {
+  auto sensor = hal::openDepthSensor(config.backend, config.device);
   if (!sensor) fail(sensor.error());
   return std::move(*sensor);
 }
@@ -77,8 +77,8 @@ void watch(const Options& options) {
 /// The panel's first lamp, switched after 0.2 to 0.8 s each time.
 class BlinkingLamp {
  public:
-  explicit BlinkingLamp(const Config::Panel& config) {
-    auto panel = hal::openButtonPanel(config.backend, panelSettings(config), notes_);
+  explicit BlinkingLamp(const PanelSettings& config) {
+    auto panel = hal::openButtonPanel(config.backend, config.device, notes_);
     if (!panel) {
       fail(panel.error() +
            ": the latency is measured with the lamp of a panel, or with "
@@ -125,8 +125,8 @@ std::vector<LampChange> readLampLog(const std::string& path) {
 
 void latency(const Options& options) {
   Config config = configOf(options);
-  config.depth_sensor.latency_ms = 0;  // what is measured must not be applied already
-  config.depth_sensor.colour = true;
+  config.depth_sensor.device.latency = {};  // what is measured must not be applied already
+  config.depth_sensor.device.colour = true;
   const auto sensor = sensorOf(config.depth_sensor);
   std::unique_ptr<BlinkingLamp> lamp;
   if (options.lamp_log.empty()) lamp = std::make_unique<BlinkingLamp>(config.panel);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <expected>
 #include <filesystem>
 #include <memory>
@@ -10,13 +9,6 @@
 #include "hal/button_panel.h"
 
 namespace hal::gpiod {
-
-struct PanelSettings {
-  std::string button_prefix = "button-";  ///< a button's line is named this and the button's name
-  std::string lamp_prefix = "lamp-";      ///< and live, delayed or frozen
-  bool active_low = true;                 ///< of the buttons: pressed is the low level
-  std::chrono::milliseconds debounce{10};
-};
 
 /// What opened, and what of the panel is less than it could be: a line each, for a person.
 struct OpenedPanel {

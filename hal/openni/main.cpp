@@ -97,8 +97,9 @@ int exportFolder(const Options& options) {
                                     .height_px = options.device.mode.height_px,
                                     .rate_hz = options.device.mode.rate_hz,
                                     .colour = options.device.colour,
-                                    .play = Play::kEveryFrame,
-                                    .repeat = false});
+                                    .latency = {},
+                                    .repeat = false},
+                                   {.play = Play::kEveryFrame});
   if (!sensor) return say(sensor.error());
   const rt::Timestamp end =
       rt::now() + rt::Nanoseconds(static_cast<std::int64_t>(options.seconds * 1e9));

@@ -20,7 +20,7 @@ constexpr rt::Nanoseconds kForever = 24h * 365;
 constexpr const char* kOtherVersion =
     "depth sensor: kagami-depth is of another version than this program: restart kagamid";
 
-std::vector<std::string> argumentsOf(const SensorSettings& settings) {
+std::vector<std::string> argumentsOf(const DepthSensorSettings& settings) {
   return {"--source",  settings.source,
           "--drivers", settings.drivers,
           "--width",   std::to_string(settings.width_px),
@@ -32,14 +32,18 @@ std::vector<std::string> argumentsOf(const SensorSettings& settings) {
 }  // namespace
 
 std::expected<std::unique_ptr<OpenniSensor>, std::string> OpenniSensor::open(
-    const SensorSettings& settings) {
+    const DepthSensorSettings& settings, const SensorOptions& options) {
   auto worker = WorkerProcess::start(argumentsOf(settings));
   if (!worker) return std::unexpected(worker.error());
-  return std::unique_ptr<OpenniSensor>(new OpenniSensor(settings, std::move(*worker)));
+  return std::unique_ptr<OpenniSensor>(new OpenniSensor(settings, options, std::move(*worker)));
 }
 
-OpenniSensor::OpenniSensor(SensorSettings settings, WorkerProcess worker)
-    : settings_(std::move(settings)), worker_(std::move(worker)), heard_(rt::now()) {
+OpenniSensor::OpenniSensor(DepthSensorSettings settings, SensorOptions options,
+                           WorkerProcess worker)
+    : settings_(std::move(settings)),
+      options_(options),
+      worker_(std::move(worker)),
+      heard_(rt::now()) {
   status_.name = settings_.source;
 }
 
@@ -54,7 +58,7 @@ std::optional<DepthFrame> OpenniSensor::waitFrame(rt::Nanoseconds timeout) {
   const rt::Timestamp until = rt::now() + timeout;
   for (;;) {
     if (due_) {
-      if (settings_.play == Play::kRealTime && due_exposure_ > rt::now()) {
+      if (options_.play == Play::kRealTime && due_exposure_ > rt::now()) {
         std::this_thread::sleep_until(std::min(due_exposure_, until));
         if (due_exposure_ > rt::now()) return std::nullopt;
       }
@@ -108,7 +112,7 @@ void OpenniSensor::turn(rt::Timestamp until) {
 
 rt::Timestamp OpenniSensor::silentUntil() const {
   if (streamed_ && worker_->hello().recording) return rt::now() + kForever;
-  return heard_ + (streamed_ ? kSilence : settings_.opening_patience);
+  return heard_ + (streamed_ ? kSilence : options_.opening_patience);
 }
 
 void OpenniSensor::onMessage(Received& received) {

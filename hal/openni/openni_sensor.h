@@ -16,16 +16,9 @@
 
 namespace hal::openni {
 
-struct SensorSettings {
-  std::string source;   ///< a URI or the path of an .oni file; empty: the first sensor there is
-  std::string drivers;  ///< folder of OpenNI2 drivers; empty: the system's
-  std::uint32_t width_px = 640;
-  std::uint32_t height_px = 480;
-  std::uint32_t rate_hz = 30;
-  bool colour = true;
-  rt::Nanoseconds latency{0};   ///< of a sensor: from exposure to the most punctual arrival
+/// What is set besides the settings of every depth sensor.
+struct SensorOptions {
   Play play = Play::kRealTime;  ///< of a recording
-  bool repeat = true;           ///< a recording begins again at its end
   /// A worker that says nothing for so long before its first picture is ended.
   rt::Nanoseconds opening_patience = std::chrono::seconds(10);
 };
@@ -41,13 +34,13 @@ struct SensorSettings {
 class OpenniSensor final : public DepthSensor {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<OpenniSensor>, std::string> open(
-      const SensorSettings& settings);
+      const DepthSensorSettings& settings, const SensorOptions& options = {});
 
   [[nodiscard]] std::optional<DepthFrame> waitFrame(rt::Nanoseconds timeout) override;
   [[nodiscard]] DepthStatus status() const override;
 
  private:
-  OpenniSensor(SensorSettings settings, WorkerProcess worker);
+  OpenniSensor(DepthSensorSettings settings, SensorOptions options, WorkerProcess worker);
 
   /// One step: what came from the worker, or the next worker, or a wait until @p until at most.
   void turn(rt::Timestamp until);
@@ -66,7 +59,8 @@ class OpenniSensor final : public DepthSensor {
     change(status_);
   }
 
-  const SensorSettings settings_;
+  const DepthSensorSettings settings_;
+  const SensorOptions options_;
   std::optional<WorkerProcess> worker_;
   rt::Timestamp heard_;     // of the worker
   rt::Timestamp start_at_;  // of the next one

@@ -27,18 +27,19 @@ using hal::DepthState;
 using hal::openni::FolderSensor;
 using hal::openni::OpenniSensor;
 using hal::openni::Play;
-using hal::openni::SensorSettings;
+using hal::openni::SensorOptions;
 using test::DepthFeed;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-SensorSettings live() {
+hal::DepthSensorSettings live() {
   return {.drivers = KAGAMI_DEPTH_DRIVERS, .width_px = 320, .height_px = 240, .latency = 40ms};
 }
 
-std::unique_ptr<OpenniSensor> opened(const SensorSettings& settings) {
-  auto sensor = OpenniSensor::open(settings);
+std::unique_ptr<OpenniSensor> opened(const hal::DepthSensorSettings& settings,
+                                     const SensorOptions& options = {}) {
+  auto sensor = OpenniSensor::open(settings, options);
   if (!sensor) {
     ADD_FAILURE() << sensor.error();
     return nullptr;
@@ -127,9 +128,7 @@ TEST(OpenniSensor, IsLookedForWhileItIsNotThere) {
 TEST(OpenniSensor, LetsADriverLookForASensorAsLongAsItTakes) {
   DepthFeed feed;
   feed.plug(false);
-  SensorSettings settings = live();
-  settings.opening_patience = 3s;
-  const auto sensor = opened(settings);
+  const auto sensor = opened(live(), {.opening_patience = 3s});
   ASSERT_TRUE(sensor);
   EXPECT_THAT(messageAbout(*sensor, "plug it in"), HasSubstr("no depth sensor found"));
   const auto first = workers();
@@ -274,7 +273,7 @@ TEST(OpenniSensor, GoesOnWithoutColour) {
 }
 
 TEST(OpenniSensor, SaysWhatIsWrongWithTheDriverFolder) {
-  SensorSettings settings = live();
+  hal::DepthSensorSettings settings = live();
   settings.drivers = "/nowhere/Drivers";
   auto sensor = opened(settings);
   ASSERT_TRUE(sensor);
@@ -290,7 +289,7 @@ TEST(OpenniSensor, SaysWhatIsWrongWithTheDriverFolder) {
 TEST(OpenniSensor, LooksOnWhereADriverIsNone) {
   const TemporaryFolder drivers;
   std::ofstream(drivers / "libbroken.so") << "not a library";
-  SensorSettings settings = live();
+  hal::DepthSensorSettings settings = live();
   settings.drivers = drivers.path();
   const auto sensor = opened(settings);
   ASSERT_TRUE(sensor);
@@ -337,7 +336,7 @@ TEST(Recordings, OfAFolderAndOfAnOniFileAreEqualPictureByPicture) {
   ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni"));
   ASSERT_TRUE(test::runDepth(scratch, {"export", "--source", scratch / "a.oni", scratch / "f"}));
   const auto oni =
-      opened({.source = scratch / "a.oni", .play = Play::kEveryFrame, .repeat = false});
+      opened({.source = scratch / "a.oni", .repeat = false}, {.play = Play::kEveryFrame});
   ASSERT_TRUE(oni);
   auto folder =
       FolderSensor::open({.folder = scratch / "f", .play = Play::kEveryFrame, .repeat = false});
@@ -366,7 +365,7 @@ TEST(Recordings, ArePlayedToTheirLastWholePictureWhereTheirEndIsMissing) {
       std::this_thread::sleep_for(20ms);
   }  // killed in the middle of a picture
   const auto sensor =
-      opened({.source = scratch / "cut.oni", .play = Play::kEveryFrame, .repeat = false});
+      opened({.source = scratch / "cut.oni", .repeat = false}, {.play = Play::kEveryFrame});
   ASSERT_TRUE(sensor);
   const Played played = playAll(*sensor);
   EXPECT_GE(played.numbers.size(), 5u) << sensor->status().message;
@@ -378,7 +377,7 @@ TEST(Recordings, CopiedInPartArePlayedAsFarAsTheyGo) {
   const auto size = std::filesystem::file_size(scratch / "a.oni");
   std::filesystem::resize_file(scratch / "a.oni", size / 2);
   const auto sensor =
-      opened({.source = scratch / "a.oni", .play = Play::kEveryFrame, .repeat = false});
+      opened({.source = scratch / "a.oni", .repeat = false}, {.play = Play::kEveryFrame});
   ASSERT_TRUE(sensor);
   const Played played = playAll(*sensor);
   EXPECT_GE(played.numbers.size(), 5u) << sensor->status().message;
@@ -389,7 +388,7 @@ TEST(Recordings, WithoutColourHaveDepthAlone) {
   auto format = DepthFeed::small();
   format.colour = false;
   ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni", format));
-  const auto sensor = opened({.source = scratch / "a.oni", .play = Play::kEveryFrame});
+  const auto sensor = opened({.source = scratch / "a.oni"}, {.play = Play::kEveryFrame});
   ASSERT_TRUE(sensor);
   const auto frame = sensor->waitFrame(20s);
   ASSERT_TRUE(frame) << sensor->status().message;
@@ -401,7 +400,7 @@ TEST(Recordings, WithoutColourHaveDepthAlone) {
 TEST(Recordings, RepeatWhereAsked) {
   const TemporaryFolder scratch;
   ASSERT_TRUE(test::recordOni(scratch, scratch / "a.oni"));
-  const auto sensor = opened({.source = scratch / "a.oni", .play = Play::kEveryFrame});
+  const auto sensor = opened({.source = scratch / "a.oni"}, {.play = Play::kEveryFrame});
   ASSERT_TRUE(sensor);
   std::uint64_t last = 0;
   int restarts = 0;

@@ -35,7 +35,15 @@ bool isSystemHeader(const std::string& header) {
          std::ranges::any_of(kFolders, [&](auto folder) { return header.starts_with(folder); });
 }
 
+bool isPattern(const std::string& folder) {
+  return folder.ends_with("/*");
+}
+
 bool begins(const std::string& folder, const std::string& path) {
+  if (isPattern(folder)) {
+    const std::string above = folder.substr(0, folder.size() - 1);
+    return path.starts_with(above) && path.find('/', above.size()) != std::string::npos;
+  }
   return path == folder || path.starts_with(folder + "/");
 }
 
@@ -61,6 +69,11 @@ LayerTable LayerTable::fromPage(const SourceFile& page) {
     }
   }
   return LayerTable(std::move(layers));
+}
+
+std::string LayerTable::placeOf(const Layer& layer, const std::string& path) {
+  if (!isPattern(layer.folder)) return layer.folder;
+  return path.substr(0, path.find('/', layer.folder.size() - 1));
 }
 
 const Layer* LayerTable::layerOf(const std::string& path) const {
@@ -91,10 +104,12 @@ std::vector<std::string> LayerTable::violations(const SourceFile& file) const {
     const Layer* other = layerOf(include->header);
     if (!other) {
       found.push_back(at + "\"" + include->header + "\" is not written from the root");
-    } else if (other != own && !isOwnFile(own->folder, other->folder) &&
-               !contains(own->may_include, other->folder)) {
-      found.push_back(at + own->folder + " may not include " + other->folder + " (" +
-                      include->header + ")");
+      continue;
+    }
+    const std::string here = placeOf(*own, file.path);
+    const std::string there = placeOf(*other, include->header);
+    if (there != here && !isOwnFile(here, there) && !contains(own->may_include, other->folder)) {
+      found.push_back(at + here + " may not include " + there + " (" + include->header + ")");
     }
   }
   return found;

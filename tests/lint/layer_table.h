@@ -9,7 +9,9 @@ namespace lint {
 
 /// One row of the layer table of docs/architecture.md.
 struct Layer {
-  std::string folder;                    ///< a folder, or one file that has rules of its own
+  /// A folder, or one file that has rules of its own; "a/*" is every folder in `a` that has no row,
+  /// each for itself.
+  std::string folder;
   std::vector<std::string> may_include;  ///< folders of other rows; "*" is any
   std::vector<std::string> libraries;    ///< foreign headers or their first folder; "*" is any
 };
@@ -28,6 +30,8 @@ class LayerTable {
   [[nodiscard]] std::vector<std::string> violations(const SourceFile& file) const;
 
  private:
+  /// Where the row of @p path begins: its folder, and for "a/*" the folder in `a`.
+  [[nodiscard]] static std::string placeOf(const Layer& layer, const std::string& path);
   [[nodiscard]] const Layer* layerOf(const std::string& path) const;
 
   std::vector<Layer> layers_;

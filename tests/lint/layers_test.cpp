@@ -1,4 +1,8 @@
+#include <algorithm>
 #include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -67,6 +71,22 @@ TEST(LayerTable, AllowsAFolderItsOwnHeaderWithARowAndOthersOnlyIfTheyNameIt) {
               ElementsAre(HasSubstr("a/value.h may not include a (a/x.h)")));
 }
 
+TEST(LayerTable, TakesEveryFolderUnderAStarForItself) {
+  const auto table = LayerTable::fromPage({.path = "docs/page.md",
+                                           .lines = {
+                                               "| Folder | May include | Libraries |",
+                                               "|---|---|---|",
+                                               "| `a/box` | - | - |",
+                                               "| `a/*` | `a/box` | - |",
+                                           }});
+  EXPECT_THAT(table.violations({.path = "a/one/x.cpp",
+                                .lines = {"#include \"a/one/x.h\"", "#include \"a/box/part.h\""}}),
+              IsEmpty());
+  EXPECT_THAT(table.violations({.path = "a/one/x.cpp", .lines = {"#include \"a/two/x.h\""}}),
+              ElementsAre(HasSubstr("a/one may not include a/two (a/two/x.h)")));
+  EXPECT_THAT(table.violations({.path = "a/x.cpp", .lines = {}}), ElementsAre(HasSubstr("no row")));
+}
+
 TEST(LayerTable, RefusesALibraryThatTheFolderDoesNotName) {
   EXPECT_THAT(smallTable().violations({.path = "hal/camera.h", .lines = {"#include <arv.h>"}}),
               ElementsAre(HasSubstr("hal may not use the library of <arv.h>")));
@@ -99,8 +119,43 @@ TEST(Tree, KeepsToTheLayerTableOfTheArchitecturePage) {
 TEST(Tree, HasEveryFolderOfTheLayerTable) {
   const auto table = tableOfThePage();
   for (const auto& layer : table.layers()) {
-    EXPECT_TRUE(std::filesystem::exists(lint::root() / layer.folder)) << layer.folder;
+    const std::string folder = layer.folder.ends_with("/*")
+                                   ? layer.folder.substr(0, layer.folder.size() - 2)
+                                   : layer.folder;
+    EXPECT_TRUE(std::filesystem::exists(lint::root() / folder)) << layer.folder;
   }
+}
+
+/// The folder of a header of a part that has no row of its own; empty: it is none.
+std::string partOf(const LayerTable& table, const std::string& header) {
+  const bool has_row = std::ranges::any_of(table.layers(), [&](const auto& layer) {
+    return !layer.folder.ends_with("/*") && header.starts_with(layer.folder) &&
+           layer.folder.starts_with("appliance/");
+  });
+  if (has_row || !header.starts_with("appliance/")) return {};
+  return header.substr(0, header.rfind('/'));
+}
+
+// The bound of HACKING.md, "Adding a part": code outside a part's folder names it in two files.
+TEST(Tree, NamesAPartInTheTableOfPartsAndInTheConfigurationOnly) {
+  const auto table = tableOfThePage();
+  std::set<std::string> parts;
+  for (const auto& file : lint::cppFilesOf(lint::readTree(lint::root()))) {
+    if (!file.path.starts_with("appliance/") || file.path.starts_with("appliance/tools/")) continue;
+    for (const auto& line : file.lines) {
+      static const std::regex kInclude(R"re(^#include "(appliance/[^"]+)")re");
+      std::smatch match;
+      if (!std::regex_search(line, match, kInclude)) continue;
+      const std::string part = partOf(table, match[1]);
+      if (part.empty()) continue;
+      parts.insert(part);
+      const bool own = file.path.starts_with(part + "/");
+      EXPECT_TRUE(own || file.path == "appliance/box/parts.cpp" ||
+                  file.path == "appliance/config/config.h")
+          << file.path << " names " << match[1];
+    }
+  }
+  EXPECT_THAT(parts, testing::IsSupersetOf({"appliance/depth", "appliance/panel"}));
 }
 
 }  // namespace
