@@ -17,7 +17,7 @@ Box::Box(const Site& site, const BoxParts& parts)
       commands_(board_.wake_render),
       control_commands_(commands_.open("control")),
       parts_(parts.patience) {
-  for (const std::string& line : site.degraded) remarks_.add("network", line);
+  for (const std::string& line : site.degraded) remarks_.add("site", line);
 }
 
 Box::~Box() {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "appliance/box/part.h"
+#include "tests/unit/sample_part/sample_settings.h"
+
+namespace appliance {
+
+/// The smallest part that has everything: settings, a thread, a section, a remark, a request. It
+/// counts the turns of its thread.
+///
+/// Requests  sample.reset: counts from 0 again.
+[[nodiscard]] MadePart makeSamplePart(const Shared& shared, const SampleSettings& settings);
+
+}  // namespace appliance
