@@ -21,14 +21,6 @@ std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available
   return line;
 }
 
-std::string fewerSets(std::uint32_t fitted, std::uint32_t wanted, double rate_hz) {
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "memory is short: the history holds %u sets (%.1f s) instead of %u", fitted,
-                fitted / rate_hz, wanted);
-  return line;
-}
-
 }  // namespace
 
 std::expected<std::unique_ptr<FrameHistory>, std::string> makeHistory(const Config& config,
@@ -49,7 +41,8 @@ std::expected<std::unique_ptr<FrameHistory>, std::string> makeHistory(const Conf
     return std::unexpected(historyTooLarge(layout, available));
   }
   if (fitted->sets < layout.sets) {
-    remarks.add("history", fewerSets(fitted->sets, layout.sets, config.trigger.rate_hz));
+    remarks.add("history", phrase<Word::kHistoryShort>(
+                               fitted->sets, fitted->sets / config.trigger.rate_hz, layout.sets));
   }
   return FrameHistory::create(*fitted,
                               use.shared ? HistorySharing::kShared : HistorySharing::kPrivate);
@@ -60,12 +53,12 @@ std::expected<void, std::string> lockMemory(const Config::Realtime& realtime,
   if (!realtime.lock_memory) return {};
   const rt::MemoryLock lock = rt::lockMemory();
   if (lock.locked && history.memory().report().locked) return {};
-  std::string refused = lock.locked
-                            ? "the frame history is not locked in memory: raise the memlock "
-                              "limit (LimitMEMLOCK=infinity)"
-                            : lock.message;
-  if (realtime.require) return std::unexpected(refused);
-  remarks.add("memory", std::move(refused));
+  const Phrase unlocked = phrase<Word::kHistoryUnlocked>();
+  if (realtime.require) return std::unexpected(lock.locked ? textOf(unlocked) : lock.message);
+  if (lock.locked)
+    remarks.add("memory", unlocked);
+  else
+    remarks.add("memory", lock.message);
   return {};
 }
 

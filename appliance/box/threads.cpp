@@ -13,11 +13,9 @@ std::expected<rt::Thread, std::string> Threads::start(
                            ": check [realtime] in the configuration");
   }
   if (!started->grant().complete()) {
-    std::string refused = "thread " + name +
-                          " runs without its real-time priority: grant CAP_SYS_NICE or "
-                          "LimitRTPRIO=95";
-    if (require_) return std::unexpected(refused);
-    remarks_.add("thread " + name, std::move(refused));
+    const Phrase plain = phrase<Word::kThreadPlain>(name);
+    if (require_) return std::unexpected(textOf(plain));
+    remarks_.add("thread " + name, plain);
   }
   return std::move(*started);
 }

@@ -96,9 +96,7 @@ std::vector<Remark> CameraArray::remarks() const {
     const std::string key = "camera " + std::to_string(i + 1);
     for (std::string& text : supervisors_[i]->remarks()) remarks.push_back({key, std::move(text)});
     if (collectors_[i]->counts().no_slot == 0) continue;
-    remarks.push_back({key, rig_.cameras[i].name +
-                                ": frames were dropped because readers held every free slot: "
-                                "please report this"});
+    remarks.push_back(remarkOf(key, phrase<Word::kCameraNoSlot>(rig_.cameras[i].name)));
   }
   return remarks;
 }

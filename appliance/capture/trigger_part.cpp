@@ -69,9 +69,7 @@ class TriggerPart final : public Part {
     status.genlock = shared_.board.genlock.status.load();
     status.genlock_text = genlockText(status.genlock, shared_.config.trigger.rate_hz);
     if (loop_.failing())
-      status.degraded.push_back(
-          {"trigger",
-           "trigger: pulses do not leave: the line's device is gone: check it, then restart"});
+      status.degraded.push_back(remarkOf("trigger", phrase<Word::kTriggerGone>()));
   }
 
  private:
@@ -95,7 +93,7 @@ MadePart makeTriggerPart(const Shared& shared) {
   if (!config.loopback_line.empty()) {
     auto opened = openLoopback(config, **line);
     if (!opened)
-      shared.remarks.add("loopback", opened.error() + "; the edges are not measured");
+      shared.remarks.add("loopback", phrase<Word::kLoopbackMissing>(opened.error()));
     else
       loopback = std::move(*opened);
   }

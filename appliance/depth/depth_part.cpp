@@ -58,7 +58,7 @@ MadePart makeDepthPart(const Shared& shared) {
   if (config.backend == "none") return nullptr;
   auto sensor = hal::openDepthSensor(config.backend, config.device);
   if (!sensor) {
-    shared.remarks.add("depth", sensor.error() + "; the box runs without its depth sensor");
+    shared.remarks.add("depth", phrase<Word::kDepthMissing>(sensor.error()));
     return nullptr;
   }
   return std::make_unique<DepthPart>(shared, std::move(*sensor));

@@ -38,9 +38,7 @@ class PanelPart final : public Part {
   void stop() override { thread_ = {}; }
 
   void report(Status& status) const override {
-    if (loop_.lost())
-      status.degraded.push_back(
-          {"panel", "panel: its GPIO chip is gone: check its plug, then restart"});
+    if (loop_.lost()) status.degraded.push_back(remarkOf("panel", phrase<Word::kPanelGone>()));
   }
 
  private:
@@ -60,7 +58,7 @@ MadePart makePanelPart(const Shared& shared) {
   auto panel = hal::openButtonPanel(config.backend, config.device, notes);
   for (std::string& note : notes) shared.remarks.add("panel", std::move(note));
   if (!panel) {
-    shared.remarks.add("panel", panel.error() + "; the box runs without its panel");
+    shared.remarks.add("panel", phrase<Word::kPanelMissing>(panel.error()));
     return nullptr;
   }
   return std::make_unique<PanelPart>(shared, std::move(*panel));

@@ -132,10 +132,11 @@ TEST_F(WiredDaemon, TellsOnceThatItsPanelWasUnplugged) {
   start();
   if (HasFatalFailure()) return;
   panel_.remove();
-  ASSERT_TRUE(daemon_->waitForOutput("panel: its GPIO chip is gone", 60s)) << daemon_->output();
+  ASSERT_TRUE(daemon_->waitForOutput("the panel's GPIO chip has disappeared", 60s))
+      << daemon_->output();
   std::this_thread::sleep_for(1s);
   const std::string output = daemon_->output();
-  EXPECT_EQ(output.find("its GPIO chip is gone"), output.rfind("its GPIO chip is gone"));
+  EXPECT_EQ(output.find("GPIO chip has disappeared"), output.rfind("GPIO chip has disappeared"));
   EXPECT_GT(stop()["frame"].size(), 10U);
 }
 
