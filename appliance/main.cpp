@@ -1,5 +1,5 @@
 // kagamid: the appliance daemon. Reads top to bottom as the box starts: configuration, display,
-// pipeline, control interface, then one loop until somebody ends it.
+// pipeline, control interface, then one event loop until a stop signal.
 
 #include <algorithm>
 #include <cstdio>
@@ -12,22 +12,16 @@
 
 #include <CLI/CLI.hpp>
 #include <malloc.h>
-#include <systemd/sd-daemon.h>
 
 #include "appliance/box/box.h"
 #include "appliance/capture/trigger_wiring.h"
 #include "appliance/config/config.h"
-#include "appliance/control/control_server.h"
-#include "appliance/journal/camera_watch.h"
-#include "appliance/journal/degraded_watch.h"
-#include "appliance/journal/genlock_watch.h"
 #include "appliance/journal/log.h"
-#include "appliance/journal/screen_watch.h"
+#include "appliance/loop/event_loop.h"
 #include "appliance/picture_recorder.h"
+#include "appliance/service/box_service.h"
 #include "appliance/site/site.h"
 #include "appliance/site/site_light.h"
-#include "rt/clock.h"
-#include "rt/stop_signals.h"
 #include "ui-kms/draw_workers.h"
 #include "ui-kms/kms_display.h"
 #include "ui-kms/offscreen_display.h"
@@ -115,43 +109,6 @@ bool scheduleDrawWorkers(const ThreadSchedule& how) {
       {.policy = how.policy, .priority = how.priority, .cpus = how.cpus});
 }
 
-std::unique_ptr<ControlServer> openControl(const Config::Control& config, Box& running) {
-  if (config.bus == "none") return nullptr;
-  auto control = ControlServer::open(config.bus, config.name, running, running);
-  if (control) return std::move(*control);
-  logWarning(control.error());
-  return nullptr;
-}
-
-/// Until a stop signal: answers the control interface, watches the cameras, feeds the watchdog.
-void serve(Box& running, const Config::Control& config, rt::StopSignals& stop) {
-  constexpr rt::Nanoseconds kTick = std::chrono::milliseconds(100);
-  auto control = openControl(config, running);
-  CameraWatch watch;
-  DegradedWatch degraded_watch(running.status().degraded);
-  GenlockWatch genlock_watch;
-  ScreenWatch screen_watch;
-  sd_notify(0, "READY=1");
-  while (!stop.requested()) {
-    if (control) {
-      control->wait(kTick);
-      if (const auto served = control->process(); !served) {
-        logWarning(served.error());
-        control.reset();
-      }
-    } else {
-      stop.waitFor(kTick);
-    }
-    const Status status = running.status();
-    for (const std::string& line : watch.look(status, rt::now())) logWarning(line);
-    for (const std::string& line : degraded_watch.look(status)) logWarning(line);
-    if (const auto line = genlock_watch.look(status)) logInfo(*line);
-    if (const auto line = screen_watch.look(status)) logWarning(*line);
-    sd_notify(0, "WATCHDOG=1");
-  }
-  sd_notify(0, "STOPPING=1");
-}
-
 /// What a killed daemon could not do: the kernel lets its lines go at whatever level they had.
 std::expected<void, std::string> releaseLines(const Options& options) {
   const auto config = loadConfig(options.config_file, options.overrides);
@@ -168,7 +125,7 @@ void endAbruptly(const std::vector<std::string>& lines) {
 }
 
 /// Errors   One line; nothing is left running.
-std::expected<void, std::string> run(const Site& site, rt::StopSignals& stop) {
+std::expected<void, std::string> run(const Site& site, EventLoop& loop) {
   const Config& config = site.config;
   const auto screen = makeScreen(config, site.rig);
   if (!screen) return std::unexpected(screen.error());
@@ -190,13 +147,16 @@ std::expected<void, std::string> run(const Site& site, rt::StopSignals& stop) {
       Box::start(site, {.display = display, .observer = recorder.get(), .on_hang = endAbruptly});
   if (!running) return std::unexpected(running.error());
   for (const std::string& line : lightLines(lightWish(config, site.rig))) logInfo(line);
-  for (const Remark& remark : (*running)->status().degraded) logWarning(remark.text);
+  const auto service = BoxService::start(
+      loop, {.bus = config.control.bus, .name = config.control.name}, **running, **running);
+  if (!service) return std::unexpected(service.error());
   logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
           std::string(display.renderer()) + ", frames by " + (*running)->status().source_path);
 
-  serve(**running, config.control, stop);
+  const auto served = (*service)->run();
 
   if (const auto stopped = (*running)->stop(); !stopped) return stopped;
+  if (!served) return served;
   return recorder ? recorder->finish() : std::expected<void, std::string>{};
 }
 
@@ -232,7 +192,12 @@ int main(int argc, char** argv) {
     if (!released) logError(released.error());
     return released ? EXIT_SUCCESS : EXIT_FAILURE;
   }
-  rt::StopSignals stop;  // before any thread
+  const auto loop = EventLoop::create();  // before any thread
+  const auto listening = loop ? (*loop)->stopOnSignals() : std::expected<void, std::string>{};
+  if (!loop || !listening) {
+    logError(loop ? listening.error() : loop.error());
+    return EXIT_FAILURE;
+  }
   const auto site = loadSite(options.config_file, options.overrides, options.target_m);
   if (!site) {
     logError(site.error());
@@ -244,7 +209,7 @@ int main(int argc, char** argv) {
                 site->config.rig.file.c_str(), site->rig.cameras.size());
     return EXIT_SUCCESS;
   }
-  if (const auto ended = run(*site, stop); !ended) {
+  if (const auto ended = run(*site, **loop); !ended) {
     logError(ended.error());
     return EXIT_FAILURE;
   }

@@ -46,6 +46,12 @@ struct CameraHealth {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+[[nodiscard]] constexpr std::string_view nameOf(CameraTrouble trouble) {
+  constexpr std::array<std::string_view, 8> kNames = {"none",   "no answer", "held",    "refuses",
+                                                      "silent", "gaps",      "damaged", "extra"};
+  return kNames[static_cast<std::size_t>(trouble)];
+}
+
 /// What is wrong and what to do; empty if nothing is. @p silent_for: since its last frame, of a
 /// camera that had one.
 [[nodiscard]] Phrase reasonOf(const CameraHealth& health,

@@ -38,19 +38,23 @@ std::expected<ControlClient, std::string> ControlClient::open(const std::string&
 }
 
 template <class... Arguments>
-std::expected<std::string, std::string> ControlClient::call(const char* method, const char* types,
+std::expected<std::string, std::string> ControlClient::call(const char* interface,
+                                                            const char* method, const char* types,
                                                             Arguments... arguments) {
   Exchange exchange;
-  const int r = sd_bus_call_method(bus_.get(), name_.c_str(), kControlPath, kControlInterface,
-                                   method, &exchange.error, &exchange.reply, types, arguments...);
+  const int r = sd_bus_call_method(bus_.get(), name_.c_str(), kControlPath, interface, method,
+                                   &exchange.error, &exchange.reply, types, arguments...);
   if (r < 0) {
     if (sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_SERVICE_UNKNOWN) != 0 ||
         sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_NAME_HAS_NO_OWNER) != 0)
-      return std::unexpected("kagamid is not running (no " + name_ + " on " + bus_name_ +
-                             "): systemctl start kagamid");
+      return std::unexpected("kagamid is not running, or has lost " + bus_name_ +
+                             " and tries again each 5 s (no " + name_ +
+                             " there): systemctl status kagamid; systemctl start kagamid");
     if (sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_ACCESS_DENIED) != 0)
-      return std::unexpected(std::string(method) + " is not permitted on " + bus_name_ +
-                             ": be root, or join the group kagami");
+      return std::unexpected(
+          std::string(method) + " is not permitted on " + bus_name_ +
+          ": be root, or join the group kagami-operators (to operate) or kagami-viewers "
+          "(to look)");
     return std::unexpected(exchange.error.message != nullptr ? exchange.error.message
                                                              : std::strerror(-r));
   }
@@ -62,35 +66,36 @@ std::expected<std::string, std::string> ControlClient::call(const char* method, 
 }
 
 ControlClient::Answer ControlClient::setMode(const std::string& mode) {
-  return withoutReply(call("SetMode", "s", mode.c_str()));
+  return withoutReply(call(kControlInterface, "SetMode", "s", mode.c_str()));
 }
 ControlClient::Answer ControlClient::setDelay(std::uint32_t delay_ms) {
-  return withoutReply(call("SetDelay", "u", delay_ms));
+  return withoutReply(call(kControlInterface, "SetDelay", "u", delay_ms));
 }
 ControlClient::Answer ControlClient::setView(std::uint32_t view) {
-  return withoutReply(call("SetView", "u", view));
+  return withoutReply(call(kControlInterface, "SetView", "u", view));
 }
 ControlClient::Answer ControlClient::setTarget(const std::array<double, 3>& target_m) {
-  return withoutReply(call("SetTarget", "ddd", target_m[0], target_m[1], target_m[2]));
+  return withoutReply(
+      call(kControlInterface, "SetTarget", "ddd", target_m[0], target_m[1], target_m[2]));
 }
 ControlClient::Answer ControlClient::releaseTarget() {
-  return withoutReply(call("ReleaseTarget", ""));
+  return withoutReply(call(kControlInterface, "ReleaseTarget", ""));
 }
 ControlClient::Answer ControlClient::freeze() {
-  return withoutReply(call("Freeze", ""));
+  return withoutReply(call(kControlInterface, "Freeze", ""));
 }
 ControlClient::Answer ControlClient::sweep() {
-  return withoutReply(call("Sweep", ""));
+  return withoutReply(call(kControlInterface, "Sweep", ""));
 }
 ControlClient::Answer ControlClient::releaseScreen() {
-  return withoutReply(call("ReleaseScreen", ""));
+  return withoutReply(call(kMaintenanceInterface, "ReleaseScreen", ""));
 }
 ControlClient::Answer ControlClient::takeScreen() {
-  return withoutReply(call("TakeScreen", ""));
+  return withoutReply(call(kMaintenanceInterface, "TakeScreen", ""));
 }
 
 std::expected<std::string, std::string> ControlClient::status() {
-  return call("Status", "");
+  return call(kStatusInterface, "Status", "");
 }
 
 }  // namespace appliance

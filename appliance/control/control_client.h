@@ -27,6 +27,7 @@ class ControlClient {
   [[nodiscard]] Answer releaseTarget();
   [[nodiscard]] Answer freeze();
   [[nodiscard]] Answer sweep();
+  /// Until takeScreen() or the end of this client.
   [[nodiscard]] Answer releaseScreen();
   [[nodiscard]] Answer takeScreen();
   /// The JSON of appliance::toJson(Status).
@@ -35,8 +36,8 @@ class ControlClient {
  private:
   ControlClient(Bus bus, std::string bus_name, std::string name);
   template <class... Arguments>
-  std::expected<std::string, std::string> call(const char* method, const char* types,
-                                               Arguments... arguments);
+  std::expected<std::string, std::string> call(const char* interface, const char* method,
+                                               const char* types, Arguments... arguments);
 
   Bus bus_;
   std::string bus_name_;

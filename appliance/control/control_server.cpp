@@ -1,30 +1,41 @@
 #include "appliance/control/control_server.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
-#include <cstring>
+#include <set>
 #include <utility>
+#include <vector>
 
-#include "appliance/control/bus.h"
+#include "appliance/control/bus_callbacks.h"
+#include "appliance/control/bus_link.h"
+#include "appliance/control/bus_values.h"
 #include "appliance/control/control_requests.h"
+#include "appliance/control/peer_watch.h"
+#include "appliance/control/status_properties.h"
 
 namespace appliance {
 
 struct ControlServer::Implementation {
+  Implementation(EventLoop& loop, Place place, ControlSink& to, Status first);
+
+  int offer(sd_bus* bus);
+  void releaseFor(const std::string& peer);
+  void takeBackFrom(const std::string& peer);
+
   ControlSink& sink;
-  const StatusSource& source;
-  Bus bus;
-  std::string bus_name;  // for messages
+  Status status;     // of the last tick
+  std::string json;  // the same, once somebody asked
+  std::vector<sd_bus_vtable> properties;
+  std::vector<BusObject> objects;
+  std::set<std::string> screen_holders;  // unique names
+  PeerWatch peers;
+  BusLink link;
 };
 
 namespace {
 
 using Server = ControlServer::Implementation;
-
-int refuse(sd_bus_error* error, const std::string& why) {
-  return sd_bus_error_set(error, SD_BUS_ERROR_INVALID_ARGS, why.c_str());
-}
 
 int busy(sd_bus_error* error) {
   return sd_bus_error_set(error, SD_BUS_ERROR_LIMITS_EXCEEDED,
@@ -32,234 +43,198 @@ int busy(sd_bus_error* error) {
 }
 
 /// Carries out one request and answers its message.
-int answer(sd_bus_message* message, Server& server, const Requested& requested,
+int answer(Server& server, sd_bus_message* message, const Requested& requested,
            sd_bus_error* error) {
   if (!requested) return refuse(error, requested.error());
   if (*requested && !server.sink.command(**requested)) return busy(error);
   return sd_bus_reply_method_return(message, "");
 }
 
-Server& serverOf(void* userdata) {
-  return *static_cast<Server*>(userdata);
-}
-
-int onSetMode(sd_bus_message* message, void* userdata, sd_bus_error* error) {
+int setMode(Server& server, sd_bus_message* message, sd_bus_error* error) {
   const char* mode = nullptr;
   if (const int r = sd_bus_message_read(message, "s", &mode); r < 0) return r;
-  Server& server = serverOf(userdata);
-  return answer(message, server, requestMode(mode, server.source.status()), error);
+  return answer(server, message, requestMode(mode, server.status), error);
 }
 
-int onSetDelay(sd_bus_message* message, void* userdata, sd_bus_error* error) {
+int setDelay(Server& server, sd_bus_message* message, sd_bus_error* error) {
   std::uint32_t delay_ms = 0;
   if (const int r = sd_bus_message_read(message, "u", &delay_ms); r < 0) return r;
-  Server& server = serverOf(userdata);
-  return answer(message, server, requestDelay(delay_ms, server.source.status()), error);
+  return answer(server, message, requestDelay(delay_ms, server.status), error);
 }
 
-int onSetView(sd_bus_message* message, void* userdata, sd_bus_error* error) {
+int setView(Server& server, sd_bus_message* message, sd_bus_error* error) {
   std::uint32_t view = 0;
   if (const int r = sd_bus_message_read(message, "u", &view); r < 0) return r;
-  Server& server = serverOf(userdata);
-  return answer(message, server, requestView(view, server.source.status()), error);
+  return answer(server, message, requestView(view, server.status), error);
 }
 
-int onSetTarget(sd_bus_message* message, void* userdata, sd_bus_error* error) {
+int setTarget(Server& server, sd_bus_message* message, sd_bus_error* error) {
   double x_m = 0;
   double y_m = 0;
   double z_m = 0;
   if (const int r = sd_bus_message_read(message, "ddd", &x_m, &y_m, &z_m); r < 0) return r;
   const auto target_m = requestTarget(x_m, y_m, z_m);
   if (!target_m) return refuse(error, target_m.error());
-  if (!serverOf(userdata).sink.setTarget(*target_m)) return busy(error);
+  if (!server.sink.setTarget(*target_m)) return busy(error);
   return sd_bus_reply_method_return(message, "");
 }
 
-int onReleaseTarget(sd_bus_message* message, void* userdata, sd_bus_error* /*error*/) {
-  serverOf(userdata).sink.releaseTarget();
+int releaseTarget(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
+  server.sink.releaseTarget();
   return sd_bus_reply_method_return(message, "");
 }
 
-int onFreeze(sd_bus_message* message, void* userdata, sd_bus_error* error) {
-  return answer(message, serverOf(userdata), Command{Command::Kind::kFreezeToggle}, error);
+int freeze(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  return answer(server, message, Command{Command::Kind::kFreezeToggle}, error);
 }
 
-int onSweep(sd_bus_message* message, void* userdata, sd_bus_error* error) {
-  return answer(message, serverOf(userdata), Command{Command::Kind::kSweep}, error);
+int sweep(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  return answer(server, message, Command{Command::Kind::kSweep}, error);
 }
 
-template <bool kReleased>
-int onScreen(sd_bus_message* message, void* userdata, sd_bus_error* /*error*/) {
-  serverOf(userdata).sink.setScreenReleased(kReleased);
+int releaseScreen(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
+  if (const int r = server.peers.add(message); r < 0) return r;
+  const char* sender = sd_bus_message_get_sender(message);
+  server.releaseFor(sender != nullptr ? sender : "");
   return sd_bus_reply_method_return(message, "");
 }
 
-int onStatus(sd_bus_message* message, void* userdata, sd_bus_error* /*error*/) {
-  return sd_bus_reply_method_return(message, "s",
-                                    toJson(serverOf(userdata).source.status()).c_str());
+int takeScreen(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
+  server.screen_holders.clear();
+  server.sink.setScreenReleased(false);
+  return sd_bus_reply_method_return(message, "");
 }
 
-int appendCameras(sd_bus_message* reply, const Status& status) {
-  if (const int r = sd_bus_message_open_container(reply, 'a', "(sstt)"); r < 0) return r;
-  for (const CameraStatus& camera : status.cameras) {
-    const int r = sd_bus_message_append(reply, "(sstt)", camera.name.c_str(),
-                                        std::string(nameOf(camera.state)).c_str(),
-                                        camera.frames_lost, camera.frames_incomplete);
-    if (r < 0) return r;
-  }
-  return sd_bus_message_close_container(reply);
+int statusJson(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
+  if (server.json.empty()) server.json = toJson(server.status);
+  return sd_bus_reply_method_return(message, "s", server.json.c_str());
 }
 
-int appendCameraReasons(sd_bus_message* reply, const Status& status) {
-  if (const int r = sd_bus_message_open_container(reply, 'a', "s"); r < 0) return r;
-  for (const CameraStatus& camera : status.cameras)
-    if (const int r = sd_bus_message_append(reply, "s", camera.reason.c_str()); r < 0) return r;
-  return sd_bus_message_close_container(reply);
+int getProperty(Server& server, const char* name, sd_bus_message* reply) {
+  const auto property = std::ranges::find(statusProperties(), std::string_view(name),
+                                          [](const auto& each) { return each.name; });
+  if (property == statusProperties().end()) return -ENOENT;
+  return appendValue(reply, property->value(server.status));
 }
-
-int appendDegraded(sd_bus_message* reply, const Status& status) {
-  if (const int r = sd_bus_message_open_container(reply, 'a', "s"); r < 0) return r;
-  for (const Remark& remark : status.degraded)
-    if (const int r = sd_bus_message_append(reply, "s", remark.text.c_str()); r < 0) return r;
-  return sd_bus_message_close_container(reply);
-}
-
-/// What one property appends to its reply.
-using Append = int (*)(sd_bus_message* reply, const Status& status);
-
-template <Append kAppend>
-int onGet(sd_bus* /*bus*/, const char* /*path*/, const char* /*interface*/,
-          const char* /*property*/, sd_bus_message* reply, void* userdata,
-          sd_bus_error* /*error*/) {
-  return kAppend(reply, serverOf(userdata).source.status());
-}
-
-constexpr Append kMode = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "s", std::string(nameOf(status.mode)).c_str());
-};
-constexpr Append kView = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "u", status.view_wanted + 1);
-};
-constexpr Append kViewShown = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "u", status.view_shown + 1);
-};
-constexpr Append kDelay = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "u", status.delay_ms);
-};
-constexpr Append kHistory = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "u", status.history_ms);
-};
-constexpr Append kTarget = [](sd_bus_message* reply, const Status& status) {
-  const auto& target_m = status.target_m;
-  return sd_bus_message_append(reply, "(ddd)", target_m[0], target_m[1], target_m[2]);
-};
-constexpr Append kShownHz = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "d", status.shown_hz);
-};
-constexpr Append kTriggers = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "t", status.triggers);
-};
-constexpr Append kFramesLost = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "t", status.frames_lost);
-};
-constexpr Append kFramesIncomplete = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "t", status.frames_incomplete);
-};
-constexpr Append kRenderer = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "s", status.renderer.c_str());
-};
-
-constexpr Append kScreen = [](sd_bus_message* reply, const Status& status) {
-  return sd_bus_message_append(reply, "s", std::string(nameOf(status.screen)).c_str());
-};
 
 // Who may call is the bus's policy (systemd/org.kagami.Kagami1.conf), not sd-bus's own rule.
 constexpr std::uint64_t kOpenToAll = SD_BUS_VTABLE_UNPRIVILEGED;
 
-const auto kVtable = std::to_array<sd_bus_vtable>({
+template <int (*kMethod)(Server&, sd_bus_message*, sd_bus_error*)>
+constexpr sd_bus_message_handler_t kOn = onMethod<Server, kMethod>;
+
+std::vector<sd_bus_vtable> propertyTable() {
+  std::vector<sd_bus_vtable> table = {SD_BUS_VTABLE_START(0)};
+  for (const StatusProperty& property : statusProperties()) {
+    constexpr sd_bus_property_get_t kGet = onProperty<Server, getProperty>;
+    if (property.signals == StatusProperty::Signals::kYes) {
+      table.push_back(SD_BUS_PROPERTY(property.name, property.type, kGet, 0,
+                                      SD_BUS_VTABLE_PROPERTY_EMITS_CHANGE));
+    } else {
+      table.push_back(SD_BUS_PROPERTY(property.name, property.type, kGet, 0, 0));
+    }
+  }
+  table.push_back(SD_BUS_METHOD_WITH_ARGS("Status", SD_BUS_NO_ARGS, SD_BUS_RESULT("s", json),
+                                          kOn<statusJson>, kOpenToAll));
+  table.push_back(SD_BUS_VTABLE_END);
+  return table;
+}
+
+const auto kControlTable = std::to_array<sd_bus_vtable>({
     SD_BUS_VTABLE_START(0),
-    SD_BUS_PROPERTY("Mode", "s", onGet<kMode>, 0, 0),
-    SD_BUS_PROPERTY("View", "u", onGet<kView>, 0, 0),
-    SD_BUS_PROPERTY("ViewShown", "u", onGet<kViewShown>, 0, 0),
-    SD_BUS_PROPERTY("DelayMs", "u", onGet<kDelay>, 0, 0),
-    SD_BUS_PROPERTY("HistoryMs", "u", onGet<kHistory>, 0, 0),
-    SD_BUS_PROPERTY("Target", "(ddd)", onGet<kTarget>, 0, 0),
-    SD_BUS_PROPERTY("ShownHz", "d", onGet<kShownHz>, 0, 0),
-    SD_BUS_PROPERTY("Triggers", "t", onGet<kTriggers>, 0, 0),
-    SD_BUS_PROPERTY("FramesLost", "t", onGet<kFramesLost>, 0, 0),
-    SD_BUS_PROPERTY("FramesIncomplete", "t", onGet<kFramesIncomplete>, 0, 0),
-    SD_BUS_PROPERTY("Cameras", "a(sstt)", onGet<appendCameras>, 0, 0),
-    SD_BUS_PROPERTY("CameraReasons", "as", onGet<appendCameraReasons>, 0, 0),
-    SD_BUS_PROPERTY("Degraded", "as", onGet<appendDegraded>, 0, 0),
-    SD_BUS_PROPERTY("Renderer", "s", onGet<kRenderer>, 0, 0),
-    SD_BUS_PROPERTY("Screen", "s", onGet<kScreen>, 0, 0),
-    SD_BUS_METHOD_WITH_ARGS("SetMode", SD_BUS_ARGS("s", mode), SD_BUS_NO_RESULT, onSetMode,
+    SD_BUS_METHOD_WITH_ARGS("SetMode", SD_BUS_ARGS("s", mode), SD_BUS_NO_RESULT, kOn<setMode>,
                             kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("SetDelay", SD_BUS_ARGS("u", delay_ms), SD_BUS_NO_RESULT, onSetDelay,
+    SD_BUS_METHOD_WITH_ARGS("SetDelay", SD_BUS_ARGS("u", delay_ms), SD_BUS_NO_RESULT, kOn<setDelay>,
                             kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("SetView", SD_BUS_ARGS("u", view), SD_BUS_NO_RESULT, onSetView,
+    SD_BUS_METHOD_WITH_ARGS("SetView", SD_BUS_ARGS("u", view), SD_BUS_NO_RESULT, kOn<setView>,
                             kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("SetTarget", SD_BUS_ARGS("d", x_m, "d", y_m, "d", z_m),
-                            SD_BUS_NO_RESULT, onSetTarget, kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("ReleaseTarget", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onReleaseTarget,
+                            SD_BUS_NO_RESULT, kOn<setTarget>, kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("ReleaseTarget", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<releaseTarget>,
                             kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("Freeze", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onFreeze, kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("Sweep", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onSweep, kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("ReleaseScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onScreen<true>,
+    SD_BUS_METHOD_WITH_ARGS("Freeze", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<freeze>, kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("Sweep", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<sweep>, kOpenToAll),
+    SD_BUS_VTABLE_END,
+});
+
+const auto kMaintenanceTable = std::to_array<sd_bus_vtable>({
+    SD_BUS_VTABLE_START(0),
+    SD_BUS_METHOD_WITH_ARGS("ReleaseScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<releaseScreen>,
                             kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("TakeScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, onScreen<false>,
-                            kOpenToAll),
-    SD_BUS_METHOD_WITH_ARGS("Status", SD_BUS_NO_ARGS, SD_BUS_RESULT("s", json), onStatus,
+    SD_BUS_METHOD_WITH_ARGS("TakeScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<takeScreen>,
                             kOpenToAll),
     SD_BUS_VTABLE_END,
 });
 
-std::string noControl(const std::string& why) {
-  return "no control interface: " + why +
-         "; kagami status and remote commands do not work, the rest does";
-}
-
 }  // namespace
 
-ControlServer::ControlServer(std::unique_ptr<Implementation> implementation)
-    : implementation_(std::move(implementation)) {}
+ControlServer::Implementation::Implementation(EventLoop& loop, Place place, ControlSink& to,
+                                              Status first)
+    : sink(to),
+      status(std::move(first)),
+      properties(propertyTable()),
+      objects{{kControlPath, kStatusInterface, properties.data(), this},
+              {kControlPath, kControlInterface, kControlTable.data(), this},
+              {kControlPath, kMaintenanceInterface, kMaintenanceTable.data(), this}},
+      peers([this](const std::string& peer) { takeBackFrom(peer); }),
+      link(loop, std::move(place.bus), std::move(place.name),
+           {.offer = [this](sd_bus* bus) { return offer(bus); },
+            .lost = [this] { peers.loseAll(); }}) {}
+
+int ControlServer::Implementation::offer(sd_bus* bus) {
+  for (const BusObject& object : objects) {
+    const int r = sd_bus_add_object_vtable(bus, nullptr, object.path, object.interface,
+                                           object.vtable, object.target);
+    if (r < 0) return r;
+  }
+  return 0;
+}
+
+void ControlServer::Implementation::releaseFor(const std::string& peer) {
+  screen_holders.insert(peer);
+  sink.setScreenReleased(true);
+}
+
+void ControlServer::Implementation::takeBackFrom(const std::string& peer) {
+  if (screen_holders.erase(peer) == 0 || !screen_holders.empty()) return;
+  sink.setScreenReleased(false);
+}
+
+ControlServer::ControlServer(EventLoop& loop, Place place, ControlSink& sink, Status first)
+    : implementation_(
+          std::make_unique<Implementation>(loop, std::move(place), sink, std::move(first))) {}
 ControlServer::~ControlServer() = default;
 
-std::expected<std::unique_ptr<ControlServer>, std::string> ControlServer::open(
-    const std::string& bus, const std::string& name, ControlSink& sink,
-    const StatusSource& source) {
-  auto opened = openBus(bus);
-  if (!opened) return std::unexpected(noControl(opened.error()));
-  auto made = std::make_unique<Implementation>(
-      Implementation{sink, source, std::move(*opened), describeBus(bus)});
-  sd_bus* raw = made->bus.get();
-  int r = sd_bus_add_object_vtable(raw, nullptr, kControlPath, kControlInterface, kVtable.data(),
-                                   made.get());
-  if (r >= 0) r = sd_bus_request_name(raw, name.c_str(), 0);
-  if (r == -EEXIST)
-    return std::unexpected(
-        noControl(name + " is taken on " + made->bus_name + ": is another kagamid running?"));
-  if (r < 0)
-    return std::unexpected(noControl("not allowed to be " + name + " on " + made->bus_name + " (" +
-                                     std::strerror(-r) +
-                                     "): is its policy file installed and the name valid?"));
-  return std::unique_ptr<ControlServer>(new ControlServer(std::move(made)));
+void ControlServer::show(const BusObject& object) {
+  implementation_->objects.push_back(object);
 }
 
-void ControlServer::wait(rt::Nanoseconds timeout) {
-  const auto timeout_us = std::chrono::duration_cast<std::chrono::microseconds>(timeout).count();
-  // A failure shows in process(), which has the words for it.
-  (void)sd_bus_wait(implementation_->bus.get(), static_cast<std::uint64_t>(timeout_us));
+void ControlServer::tick(rt::Timestamp now, Status status) {
+  Implementation& own = *implementation_;
+  own.link.look(now);
+  std::vector<const char*> changed = changedProperties(own.status, status);
+  own.status = std::move(status);
+  own.json.clear();
+  if (changed.empty() || !connected()) return;
+  changed.push_back(nullptr);
+  // A failure means a bus that is being lost; the link sees that itself.
+  (void)sd_bus_emit_properties_changed_strv(own.link.bus(), kControlPath, kStatusInterface,
+                                            const_cast<char**>(changed.data()));
 }
 
-std::expected<void, std::string> ControlServer::process() {
-  for (;;) {
-    const int r = sd_bus_process(implementation_->bus.get(), nullptr);
-    if (r == 0) return {};
-    if (r < 0)
-      return std::unexpected(
-          noControl("lost " + implementation_->bus_name + " (" + std::strerror(-r) + ")"));
-  }
+bool ControlServer::connected() const {
+  return implementation_->link.bus() != nullptr;
+}
+
+std::string ControlServer::trouble() const {
+  const std::string& why = implementation_->link.trouble();
+  if (why.empty()) return why;
+  return "no control interface: " + why +
+         "; kagami status and remote commands do not work, the rest does; tried again every 5 s";
+}
+
+std::string ControlServer::title() const {
+  return implementation_->link.title();
 }
 
 }  // namespace appliance

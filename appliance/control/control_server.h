@@ -1,45 +1,55 @@
 #pragma once
 
-#include <expected>
 #include <memory>
 #include <string>
 
+#include "appliance/control/bus_object.h"
+#include "appliance/loop/event_loop.h"
 #include "appliance/status/status.h"
 #include "rt/clock.h"
 
 namespace appliance {
 
-/// The daemon's D-Bus interface: object /org/kagami/Kagami1, interface org.kagami.Kagami1.
+/// The daemon's D-Bus interface: object /org/kagami/Kagami1 with one interface per right:
+/// org.kagami.Kagami1 to look, .Control to operate, .Maintenance to maintain. docs/dbus.md is the
+/// reference.
 ///
-/// Arguments are checked here: what is wrong goes back to the caller as an error of one line,
-/// and nothing invalid reaches the sink. Views count from 1 on the bus.
+/// Everything that is read comes from the snapshot of the last tick(). Arguments are checked here:
+/// what is wrong goes back to the caller as an error of one line, and nothing invalid reaches the
+/// sink. Views count from 1 on the bus.
 ///
-/// Threads  One at a time, SCHED_OTHER: main, between its ticks. The sink and the
-///          source are called from process() only, and outlive the server.
+/// Threads  The event loop's. The sink is called from there only, and outlives the server.
 /// RT       Nothing here is RT safe.
-/// Errors   A bus that is not there, or that goes away, is an outcome with one line that says
-///          what does not work and what to do: the daemon goes on without it.
+/// Errors   A bus that is not there, or that goes away, is an outcome: it is tried again, and
+///          trouble() says so.
 class ControlServer {
  public:
-  /// @p bus: "system", "session" or a D-Bus address; @p name: the well-known name to own.
-  [[nodiscard]] static std::expected<std::unique_ptr<ControlServer>, std::string> open(
-      const std::string& bus, const std::string& name, ControlSink& sink,
-      const StatusSource& source);
+  struct Place {
+    std::string bus;   ///< "system", "session" or a D-Bus address
+    std::string name;  ///< the well-known name to own
+  };
 
+  ControlServer(EventLoop& loop, Place place, ControlSink& sink, Status first);
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
 
-  /// Returns when there is something to process(), a signal came, or after @p timeout.
-  void wait(rt::Nanoseconds timeout);
+  /// Shows one more interface of an object; before the first tick().
+  void show(const BusObject& object);
 
-  /// Answers everything that came; never blocks. After an error the server is of no further use.
-  [[nodiscard]] std::expected<void, std::string> process();
+  /// Takes the status that is shown from now on, signals what changed, and looks after the
+  /// connection.
+  void tick(rt::Timestamp now, Status status);
 
-  struct Implementation;  // keeps sd-bus out of every includer
+  [[nodiscard]] bool connected() const;
+  /// Why there is no control interface; empty: nothing wrong, or not known yet.
+  [[nodiscard]] std::string trouble() const;
+  /// "org.kagami.Kagami1 on the system bus"
+  [[nodiscard]] std::string title() const;
+
+  struct Implementation;  // keeps sd-bus's tables out of every includer
 
  private:
-  explicit ControlServer(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;
 };
 

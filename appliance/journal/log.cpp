@@ -1,29 +1,45 @@
 #include "appliance/journal/log.h"
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 
 #include <systemd/sd-daemon.h>
+#include <unistd.h>
 
 namespace appliance {
 namespace {
 
-void write(const char* level, const char* word, std::string_view line) {
-  static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
-  std::fprintf(stderr, "%s%.*s\n", journal ? level : word, static_cast<int>(line.size()),
-               line.data());
+struct Prefix {
+  const char* level;
+  const char* word;
+};
+
+/// In the order of LogLevel.
+constexpr std::array<Prefix, 4> kPrefixes = {{
+    {SD_ERR, "error: "},
+    {SD_WARNING, "warning: "},
+    {SD_NOTICE, ""},
+    {SD_INFO, ""},
+}};
+
+bool journalReads() {
+  struct stat file{};
+  return fstat(STDERR_FILENO, &file) == 0 && isJournal(std::getenv("JOURNAL_STREAM"), file);
 }
 
 }  // namespace
 
-void logInfo(std::string_view line) {
-  write(SD_INFO, "", line);
+void log(LogLevel level, std::string_view line) {
+  static const bool journal = journalReads();
+  const Prefix& prefix = kPrefixes[static_cast<std::size_t>(level)];
+  std::fprintf(stderr, "%s%.*s\n", journal ? prefix.level : prefix.word,
+               static_cast<int>(line.size()), line.data());
 }
-void logWarning(std::string_view line) {
-  write(SD_WARNING, "warning: ", line);
-}
-void logError(std::string_view line) {
-  write(SD_ERR, "error: ", line);
+
+bool isJournal(const char* journal_stream, const struct stat& file) {
+  return journal_stream != nullptr &&
+         journal_stream == std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino);
 }
 
 }  // namespace appliance

@@ -9,6 +9,16 @@ std::string_view nameOf(hal::ScreenState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+std::string withoutNumbers(std::string_view line) {
+  std::string rest;
+  const std::size_t colon = line.find(':');
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool digit = line[i] >= '0' && line[i] <= '9';
+    if (!digit || i < colon) rest += line[i];
+  }
+  return rest;
+}
+
 namespace {
 
 nlohmann::ordered_json genlockObject(const Status& status) {

@@ -45,6 +45,10 @@ struct Status {
 
 [[nodiscard]] std::string_view nameOf(hal::ScreenState state);
 
+/// @p line without the numbers after its first colon: "sensor: silent for 7.2 s" is the same
+/// trouble as "sensor: silent for 7.1 s".
+[[nodiscard]] std::string withoutNumbers(std::string_view line);
+
 /// One JSON object with the names of the fields above; views from 1. A section is an object of its
 /// line and its values, named after its key.
 [[nodiscard]] std::string toJson(const Status& status);

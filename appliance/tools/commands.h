@@ -16,7 +16,7 @@ struct ControlPlace {
   std::string name = "org.kagami.Kagami1";
 };
 
-/// status, mode, delay, view, target, freeze, sweep. @p place outlives the parsing.
+/// status, mode, delay, view, target, freeze, sweep, screen. @p place outlives the parsing.
 void addControlCommands(CLI::App& kagami, const ControlPlace& place);
 void addConfigCommand(CLI::App& kagami);
 void addPlanCommand(CLI::App& kagami);

@@ -1,11 +1,17 @@
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "appliance/control/control_client.h"
 #include "appliance/tools/commands.h"
@@ -36,6 +42,45 @@ void showStatus(const ControlPlace& place, bool as_json) {
   const auto text = statusText(*status);
   if (!text) fail(text.error());
   std::fputs(text->c_str(), stdout);
+}
+
+/// Runs @p command and returns its exit status.
+int runToItsEnd(std::vector<std::string> command) {
+  std::vector<char*> argv;
+  for (std::string& word : command) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_t child = -1;
+  if (const int r = posix_spawnp(&child, argv.front(), nullptr, nullptr, argv.data(), environ);
+      r != 0)
+    fail(command.front() + ": cannot be started (" + std::strerror(r) + ")");
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the command; this one ends after it
+  int status = 0;
+  if (waitpid(child, &status, 0) != child) return 1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void waitForCtrlC() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  int came = 0;
+  (void)sigwait(&signals, &came);
+}
+
+/// The screen comes back when this connection ends, however it ends.
+void releaseScreen(const ControlPlace& place, std::vector<std::string> command) {
+  ControlClient client = connect(place);
+  expectDone(client.releaseScreen());
+  if (!command.empty() && command.front() == "--") command.erase(command.begin());
+  if (command.empty()) {
+    std::puts("the screen is free until this command ends (Ctrl-C)");
+    std::fflush(stdout);
+    waitForCtrlC();
+    return;
+  }
+  if (const int status = runToItsEnd(std::move(command)); status != 0)
+    throw CLI::RuntimeError(status);
 }
 
 }  // namespace
@@ -91,9 +136,10 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
 
   CLI::App* screen = kagami.add_subcommand("screen", "Give the screen to another program");
   screen->require_subcommand(1);
-  screen->add_subcommand("release", "Show nothing; capture goes on")->callback([&place] {
-    expectDone(connect(place).releaseScreen());
-  });
+  CLI::App* lend = screen->add_subcommand(
+      "release", "Show nothing while COMMAND runs, or until Ctrl-C; capture goes on");
+  lend->prefix_command();
+  lend->callback([&place, lend] { releaseScreen(place, lend->remaining()); });
   screen->add_subcommand("take", "Show pictures again")->callback([&place] {
     expectDone(connect(place).takeScreen());
   });

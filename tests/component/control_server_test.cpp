@@ -2,10 +2,9 @@
 
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <limits>
-#include <mutex>
-#include <thread>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -13,96 +12,29 @@
 #include <nlohmann/json.hpp>
 
 #include "appliance/control/control_client.h"
+#include "tests/support/becomes_true.h"
+#include "tests/support/control_daemon.h"
+#include "tests/support/output_of.h"
 #include "tests/support/private_bus.h"
 
 namespace {
 
 using appliance::Command;
 using appliance::ControlClient;
-using appliance::ControlServer;
 using std::chrono::milliseconds;
+using test::Box;
+using test::Daemon;
+using test::kName;
+using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr const char* kName = "org.kagami.Kagami1";
-
-/// The daemon's side of both interfaces: keeps what came, answers with a fixed status.
-class Box : public appliance::ControlSink, public appliance::StatusSource {
- public:
-  bool command(const Command& command) override {
-    const std::scoped_lock lock(mutex_);
-    if (full_) return false;
-    commands_.push_back(command);
-    return true;
-  }
-  bool setTarget(const std::array<double, 3>& target_m) override {
-    const std::scoped_lock lock(mutex_);
-    target_m_ = target_m;
-    return true;
-  }
-  void releaseTarget() override {
-    const std::scoped_lock lock(mutex_);
-    target_m_ = {0, 0, 1};
-  }
-  void setScreenReleased(bool released) override {
-    const std::scoped_lock lock(mutex_);
-    screen_ = released ? hal::ScreenState::kReleased : hal::ScreenState::kShowing;
-  }
-  [[nodiscard]] appliance::Status status() const override {
-    const std::scoped_lock lock(mutex_);
-    appliance::Status status;
-    status.mode = appliance::Mode::kDelayed;
-    status.view_wanted = 6;
-    status.view_shown = 7;
-    status.delay_ms = 1500;
-    status.history_ms = 7500;
-    status.target_m = target_m_;
-    status.shown_hz = 39.5;
-    status.screen = screen_;
-    status.frames_lost = 3;
-    for (int i = 1; i <= 20; ++i)
-      status.cameras.push_back(
-          {.name = "cam" + std::to_string(i), .state = appliance::CameraState::kStreaming});
-    status.cameras[6].state = appliance::CameraState::kLost;
-    status.cameras[6].reason = "no frames since 0.4 s: check its cable";
-    status.cameras[6].frames_lost = 3;
-    status.degraded = {{"memory", "memory is not locked"}, {"camera 7", "view 7 \"rear\" is lost"}};
-    return status;
-  }
-  void fill() {
-    const std::scoped_lock lock(mutex_);
-    full_ = true;
-  }
-  [[nodiscard]] std::vector<Command> commands() const {
-    const std::scoped_lock lock(mutex_);
-    return commands_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::vector<Command> commands_;
-  std::array<double, 3> target_m_{0, 0, 1};
-  bool full_ = false;
-  hal::ScreenState screen_ = hal::ScreenState::kShowing;
-};
 
 class ControlInterface : public testing::Test {
  protected:
   void SetUp() override {
     if (bus_.address().empty())
       GTEST_SKIP() << "dbus-daemon cannot be started here (package dbus-daemon)";
-    auto opened = ControlServer::open(bus_.address(), kName, box_, box_);
-    ASSERT_TRUE(opened.has_value()) << opened.error();
-    server_ = std::move(*opened);
-    thread_ = std::jthread([this](const std::stop_token& stop) {
-      while (!stop.stop_requested()) {
-        const auto processed = server_->process();
-        if (!processed) {
-          fault_ = processed.error();
-          return;
-        }
-        server_->wait(milliseconds(20));
-      }
-    });
+    daemon_.emplace(bus_.address(), box_);
+    ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();
   }
 
   [[nodiscard]] ControlClient client() const {
@@ -113,9 +45,7 @@ class ControlInterface : public testing::Test {
 
   test::PrivateBus bus_;
   Box box_;
-  std::unique_ptr<ControlServer> server_;
-  std::string fault_;  // read after the thread is joined
-  std::jthread thread_;
+  std::optional<Daemon> daemon_;
 };
 
 TEST_F(ControlInterface, CarriesCommandsToTheSink) {
@@ -125,19 +55,19 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
   EXPECT_TRUE(kagami.setView(20).has_value());
   EXPECT_TRUE(kagami.freeze().has_value());
   EXPECT_TRUE(kagami.sweep().has_value());
-  EXPECT_THAT(
-      box_.commands(),
-      testing::ElementsAre(Command{Command::Kind::kGoLive},
-                           Command{.kind = Command::Kind::kSetDelay, .delay = milliseconds(2500)},
-                           Command{.kind = Command::Kind::kSetView, .camera = 19},
-                           Command{Command::Kind::kFreezeToggle}, Command{Command::Kind::kSweep}));
+  EXPECT_THAT(box_.commands(),
+              ElementsAre(Command{Command::Kind::kGoLive},
+                          Command{.kind = Command::Kind::kSetDelay, .delay = milliseconds(2500)},
+                          Command{.kind = Command::Kind::kSetView, .camera = 19},
+                          Command{Command::Kind::kFreezeToggle}, Command{Command::Kind::kSweep}));
   EXPECT_TRUE(kagami.setTarget({1, 2, 0.5}).has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{1, 2, 0.5}));
   EXPECT_TRUE(kagami.releaseTarget().has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{0, 0, 1}));
   EXPECT_TRUE(kagami.releaseScreen().has_value());
   EXPECT_EQ(box_.status().screen, hal::ScreenState::kReleased);
-  EXPECT_THAT(kagami.status().value(), HasSubstr("\"state\":\"released\""));
+  EXPECT_TRUE(test::becomesTrue(
+      [&] { return kagami.status().value().find("\"state\":\"released\"") != std::string::npos; }));
   EXPECT_TRUE(kagami.takeScreen().has_value());
   EXPECT_EQ(box_.status().screen, hal::ScreenState::kShowing);
 }
@@ -173,55 +103,108 @@ TEST_F(ControlInterface, StatusIsOneJsonObjectWithViewsFromOne) {
   EXPECT_EQ(status["degraded"][0], "memory is not locked");
 }
 
-std::string outputOf(const std::string& command) {
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::string text;
-  std::array<char, 4096> chunk{};
-  while (std::fgets(chunk.data(), chunk.size(), pipe) != nullptr) text += chunk.data();
-  pclose(pipe);
-  return text;
-}
-
-TEST_F(ControlInterface, IsIntrospectableAndReadableByBusctl) {
+TEST_F(ControlInterface, IsReadableByBusctl) {
   const std::string busctl = "busctl --address='" + bus_.address() + "' ";
-  if (outputOf("busctl --version").find("systemd") == std::string::npos)
+  if (test::outputOf("busctl --version").find("systemd") == std::string::npos)
     GTEST_SKIP() << "busctl is not installed (package systemd)";
   const std::string object = " org.kagami.Kagami1 /org/kagami/Kagami1 ";
-  const std::string seen = outputOf(busctl + "introspect" + object);
-  for (const char* name :
-       {".SetMode",  ".SetDelay", ".SetView",  ".SetTarget",     ".Freeze",           ".Sweep",
-        ".Status",   ".Mode",     ".View",     ".ViewShown",     ".DelayMs",          ".HistoryMs",
-        ".Target",   ".ShownHz",  ".Triggers", ".FramesLost",    ".FramesIncomplete", ".Cameras",
-        ".Degraded", ".Renderer", ".Screen",   ".ReleaseScreen", ".TakeScreen"})
-    EXPECT_THAT(seen, HasSubstr(std::string(name) + " "));
   const std::string property = "get-property" + object + "org.kagami.Kagami1 ";
-  EXPECT_EQ(outputOf(busctl + property + "View"), "u 7\n");
-  EXPECT_EQ(outputOf(busctl + property + "Target"), "(ddd) 0 0 1\n");
-  EXPECT_EQ(outputOf(busctl + property + "Mode"), "s \"delayed\"\n");
-  EXPECT_THAT(outputOf(busctl + property + "Cameras"), HasSubstr("\"cam7\" \"lost\" 3 0"));
-  EXPECT_THAT(outputOf(busctl + property + "CameraReasons"),
-              HasSubstr("\"no frames since 0.4 s: check its cable\""));
-  EXPECT_THAT(outputOf(busctl + "call" + object + "org.kagami.Kagami1 SetView u 99"),
+  EXPECT_EQ(test::outputOf(busctl + property + "View"), "u 7\n");
+  EXPECT_EQ(test::outputOf(busctl + property + "Target"), "(ddd) 0 0 1\n");
+  EXPECT_EQ(test::outputOf(busctl + property + "Mode"), "s \"delayed\"\n");
+  EXPECT_THAT(test::outputOf(busctl + property + "Cameras"),
+              AllOf(HasSubstr("\"Name\" s \"cam7\" \"State\" s \"lost\""),
+                    HasSubstr("\"Reason\" s \"no frames since 0.4 s: check its cable\"")));
+  EXPECT_THAT(test::outputOf(busctl + "call" + object + "org.kagami.Kagami1.Control SetView u 99"),
               HasSubstr("there is no view 99"));
 }
 
-TEST_F(ControlInterface, ASecondDaemonOnTheSameBusIsToldSo) {
-  const auto second = ControlServer::open(bus_.address(), kName, box_, box_);
-  ASSERT_FALSE(second.has_value());
-  EXPECT_THAT(second.error(), HasSubstr("another kagamid"));
+TEST_F(ControlInterface, SignalsWhatChangedAndNothingElse) {
+  auto listener = appliance::openBus(bus_.address());
+  ASSERT_TRUE(listener.has_value()) << listener.error();
+  std::vector<std::string> signalled;
+  const auto on_change = [](sd_bus_message* signal, void* names, sd_bus_error*) {
+    const char* interface = nullptr;
+    (void)sd_bus_message_read(signal, "s", &interface);
+    (void)sd_bus_message_enter_container(signal, 'a', "{sv}");
+    while (sd_bus_message_enter_container(signal, 'e', "sv") > 0) {
+      const char* name = nullptr;
+      (void)sd_bus_message_read(signal, "s", &name);
+      static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+      (void)sd_bus_message_skip(signal, "v");
+      (void)sd_bus_message_exit_container(signal);
+    }
+    return 0;
+  };
+  ASSERT_GE(sd_bus_match_signal(listener->get(), nullptr, kName, "/org/kagami/Kagami1",
+                                "org.freedesktop.DBus.Properties", "PropertiesChanged", on_change,
+                                &signalled),
+            0);
+  ASSERT_TRUE(client().setTarget({1, 2, 0.5}).has_value());  // it moves with every picture
+  ControlClient holder = client();
+  ASSERT_TRUE(holder.releaseScreen().has_value());
+  for (int i = 0; i < 100 && signalled.empty(); ++i) {
+    while (sd_bus_process(listener->get(), nullptr) > 0) {
+    }
+    (void)sd_bus_wait(listener->get(), 100'000);
+  }
+  EXPECT_THAT(signalled, ElementsAre("Screen"));
 }
 
-TEST_F(ControlInterface, ABusThatGoesAwayIsAnOutcome) {
+TEST_F(ControlInterface, ATextThatIsNotUtf8BreaksNothing) {
+  box_.degrade("sensor: \xff\xc3 says its driver");
+  const std::string busctl = "busctl --address='" + bus_.address() + "' ";
+  EXPECT_TRUE(test::becomesTrue([&] {
+    return test::outputOf(busctl +
+                          "get-property org.kagami.Kagami1 /org/kagami/Kagami1 "
+                          "org.kagami.Kagami1 Degraded")
+               .find("sensor: ?? says its driver") != std::string::npos;
+  }));
+  EXPECT_THAT(
+      test::outputOf(busctl + "call org.kagami.Kagami1 /org/kagami/Kagami1 "
+                              "org.freedesktop.DBus.Properties GetAll s org.kagami.Kagami1"),
+      HasSubstr("\"Degraded\""));
+  EXPECT_THAT(client().status().value(), HasSubstr("says its driver"));
+}
+
+TEST_F(ControlInterface, TheScreenComesBackWhenThePeerThatHeldItIsGone) {
+  {
+    ControlClient holder = client();
+    ControlClient second = client();
+    ASSERT_TRUE(holder.releaseScreen().has_value());
+    ASSERT_TRUE(second.releaseScreen().has_value());
+    EXPECT_EQ(box_.status().screen, hal::ScreenState::kReleased);
+  }
+  EXPECT_TRUE(
+      test::becomesTrue([&] { return box_.status().screen == hal::ScreenState::kShowing; }));
+}
+
+TEST_F(ControlInterface, ASecondDaemonOnTheSameBusIsToldSo) {
+  Box box;
+  const Daemon second(bus_.address(), box);
+  ASSERT_TRUE(second.waitForTrouble());
+  EXPECT_THAT(second.trouble(), HasSubstr("is another kagamid running?"));
+}
+
+TEST_F(ControlInterface, IsThereAgainAfterTheBusWasGone) {
+  ControlClient holder = client();
+  ASSERT_TRUE(holder.releaseScreen().has_value());
+  const std::string address = bus_.address();
   bus_.stop();
-  thread_.join();  // it ends by itself: process() said so
-  EXPECT_THAT(fault_, HasSubstr("no control interface: lost the bus"));
+  ASSERT_TRUE(daemon_->waitForTrouble());
+  EXPECT_THAT(daemon_->trouble(), HasSubstr("no control interface: lost the bus"));
+  EXPECT_EQ(box_.status().screen, hal::ScreenState::kShowing) << "its holder is gone, too";
+
+  const test::PrivateBus again(address);
+  ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();
+  EXPECT_TRUE(client().status().has_value());
 }
 
 TEST(ControlBus, AnUnreachableBusIsAnOutcome) {
   Box box;
-  const auto server = ControlServer::open("unix:path=/nonexistent/bus", kName, box, box);
-  ASSERT_FALSE(server.has_value());
-  EXPECT_THAT(server.error(), HasSubstr("cannot reach the bus unix:path=/nonexistent/bus"));
+  const Daemon daemon("unix:path=/nonexistent/bus", box);
+  ASSERT_TRUE(daemon.waitForTrouble());
+  EXPECT_THAT(daemon.trouble(), HasSubstr("cannot reach the bus unix:path=/nonexistent/bus"));
   EXPECT_THAT(ControlClient::open("not an address", kName).error(), HasSubstr("cannot reach"));
 }
 

@@ -28,6 +28,10 @@ class CommandedBox : public testing::Test {
   /// kagamid with @p settings, until it runs.
   void startDaemon(const std::vector<std::string>& settings = {});
 
+  [[nodiscard]] const TemporaryFolder& folder() const { return folder_; }
+  [[nodiscard]] const std::string& busAddress() const { return bus_.address(); }
+  [[nodiscard]] ChildProcess& daemon() { return *daemon_; }
+
   struct Answer {
     int exit_status = -1;
     std::string text;

@@ -1,5 +1,3 @@
-#include "appliance/journal/genlock_watch.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,40 +8,7 @@ namespace {
 using appliance::GenlockReason;
 using appliance::GenlockState;
 using appliance::genlockText;
-using appliance::GenlockWatch;
-using appliance::Status;
 using testing::HasSubstr;
-using testing::Optional;
-
-Status statusOf(GenlockState state, GenlockReason reason, std::uint64_t unlocks = 0) {
-  Status status;
-  status.genlock = {.state = state, .reason = reason, .unlocks = unlocks};
-  status.genlock_text = "stands so";
-  return status;
-}
-
-TEST(GenlockWatch, TellsEveryLockAndLossOnceAndNotTheWayToTheFirst) {
-  GenlockWatch watch;
-  const auto look = [&](GenlockState state, GenlockReason reason, std::uint64_t unlocks = 0) {
-    return watch.look(statusOf(state, reason, unlocks));
-  };
-  EXPECT_EQ(look(GenlockState::kFreeRunning, GenlockReason::kNoVblanks), std::nullopt);
-  EXPECT_EQ(look(GenlockState::kFreeRunning, GenlockReason::kNoFrames), std::nullopt);
-  EXPECT_EQ(look(GenlockState::kAcquiring, GenlockReason::kNone), std::nullopt);
-  EXPECT_THAT(look(GenlockState::kLocked, GenlockReason::kNone), Optional(HasSubstr("stands so")));
-  EXPECT_EQ(look(GenlockState::kLocked, GenlockReason::kNone), std::nullopt);
-  EXPECT_NE(look(GenlockState::kAcquiring, GenlockReason::kPhaseLost, 1), std::nullopt);
-  EXPECT_EQ(look(GenlockState::kAcquiring, GenlockReason::kPhaseLost, 1), std::nullopt);
-  EXPECT_NE(look(GenlockState::kLocked, GenlockReason::kNone, 1), std::nullopt);
-  EXPECT_NE(look(GenlockState::kLocked, GenlockReason::kNone, 2), std::nullopt)
-      << "lost and found between two looks";
-}
-
-TEST(GenlockWatch, TellsARatioThatCannotLock) {
-  GenlockWatch watch;
-  EXPECT_NE(watch.look(statusOf(GenlockState::kFreeRunning, GenlockReason::kRatio)), std::nullopt);
-  EXPECT_EQ(watch.look(statusOf(GenlockState::kFreeRunning, GenlockReason::kRatio)), std::nullopt);
-}
 
 std::string ratioText(double trigger_hz, double refresh_hz) {
   return genlockText({.state = GenlockState::kFreeRunning,

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <systemd/sd-bus.h>
+
+namespace appliance {
+
+/// An interface of an object that is shown on the bus, whenever there is one. All of it outlives
+/// the control server. Callbacks are made by onMethod() and onProperty(); who may call is decided
+/// by the bus's policy, per interface (systemd/org.kagami.Kagami1.conf).
+struct BusObject {
+  const char* path;
+  const char* interface;
+  const sd_bus_vtable* vtable;
+  void* target;  ///< what the callbacks get
+};
+
+}  // namespace appliance

@@ -1,0 +1,84 @@
+#include "appliance/service/box_service.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <systemd/sd-daemon.h>
+
+#include "appliance/journal/log.h"
+#include "rt/printable.h"
+
+namespace appliance {
+
+std::expected<std::unique_ptr<BoxService>, std::string> BoxService::start(
+    EventLoop& loop, const ControlServer::Place& place, ControlSink& sink,
+    const StatusSource& source) {
+  std::unique_ptr<BoxService> service(new BoxService(loop, source));
+  if (place.bus != "none")
+    service->control_ = std::make_unique<ControlServer>(loop, place, sink, source.status());
+  BoxService& serving = *service;
+  auto added = loop.every(kTick, [&serving] { serving.tick(); });
+  if (added) added = loop.every(kWatchdog, [] { (void)sd_notify(0, "WATCHDOG=1"); });
+  if (!added) return std::unexpected(added.error());
+  serving.tick();
+  if (serving.control_) serving.waitForName();
+  return service;
+}
+
+/// A client that waits for READY=1 finds the name.
+void BoxService::waitForName() {
+  const rt::Timestamp end = rt::now() + kWaitForName;
+  while (!control_->connected() && control_->trouble().empty() && rt::now() < end) {
+    if (!loop_.turn()) return;  // run() says why
+  }
+}
+
+std::expected<void, std::string> BoxService::run() {
+  (void)sd_notify(0, "READY=1");
+  const auto ended = loop_.run();
+  (void)sd_notify(0, "STOPPING=1");
+  return ended;
+}
+
+void BoxService::tick() {
+  const rt::Timestamp now = rt::now();
+  Status status = source_.status();
+  std::vector<Condition> more;
+  if (control_) more.push_back(controlCondition());
+  for (const JournalLine& line : journal_.look(now, status, more)) log(line);
+  std::string text = serviceText(status);
+  if (text != service_text_) {
+    (void)sd_notify(0, ("STATUS=" + text).c_str());
+    service_text_ = std::move(text);
+  }
+  if (control_) control_->tick(now, std::move(status));
+}
+
+Condition BoxService::controlCondition() const {
+  const std::string trouble = control_->trouble();
+  const auto now = !trouble.empty()        ? Condition::Now::kHolds
+                   : control_->connected() ? Condition::Now::kOver
+                                           : Condition::Now::kUnclear;
+  return {.key = "control",
+          .kind = trouble,
+          .now = now,
+          .text = trouble,
+          .end = "control interface: " + control_->title()};
+}
+
+std::string serviceText(const Status& status) {
+  const auto in_trouble = std::ranges::count_if(status.cameras, [](const CameraStatus& camera) {
+    return camera.trouble != CameraTrouble::kNone;
+  });
+  std::string text = std::string(nameOf(status.mode)) + ", view " +
+                     std::to_string(status.view_wanted + 1) + " of " +
+                     std::to_string(status.cameras.size());
+  if (in_trouble > 0) text += "; cameras in trouble: " + std::to_string(in_trouble);
+  if (status.screen != hal::ScreenState::kShowing)
+    text += "; screen: " + std::string(nameOf(status.screen));
+  if (!status.degraded.empty())
+    text += "; less than configured: " + std::to_string(status.degraded.size());
+  return rt::printable(text);
+}
+
+}  // namespace appliance

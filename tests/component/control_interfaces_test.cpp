@@ -1,0 +1,171 @@
+// The D-Bus interface as it is published: its XML files, and who may do what.
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/support/control_daemon.h"
+#include "tests/support/output_of.h"
+#include "tests/support/private_bus.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+using test::outputOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string contentOf(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string attribute(const std::string& tag, const std::string& name) {
+  std::smatch found;
+  return std::regex_search(tag, found, std::regex(" " + name + "=\"([^\"]*)\"")) ? found.str(1)
+                                                                                 : "";
+}
+
+/// Every member of our interfaces as one line, whatever the layout of the XML.
+std::set<std::string> membersOf(std::string xml) {
+  xml = std::regex_replace(xml, std::regex("<!--[^]*?-->"), "");
+  std::set<std::string> members;
+  std::string interface;
+  std::string member;
+  static const std::regex kTag("<(interface|method|signal|property|arg|annotation)( [^>]*)>");
+  for (std::sregex_iterator it(xml.begin(), xml.end(), kTag), end; it != end; ++it) {
+    const std::string kind = it->str(1);
+    const std::string tag = it->str(2);
+    const std::string name = attribute(tag, "name");
+    if (kind == "interface") {
+      interface = name;
+      continue;
+    }
+    if (!interface.starts_with("org.kagami.")) continue;
+    if (kind == "arg") {
+      members.insert(member + " argument " + name + " " + attribute(tag, "type") + " " +
+                     attribute(tag, "direction"));
+    } else if (kind == "annotation") {
+      members.insert(member + " " + name + " " + attribute(tag, "value"));
+    } else {
+      member = interface + "." + name;
+      members.insert(member + " " + kind + " " + attribute(tag, "type") + " " +
+                     attribute(tag, "access"));
+    }
+  }
+  return members;
+}
+
+TEST(ControlInterfaces, TheXmlFilesSayWhatTheRunningDaemonSays) {
+  const test::PrivateBus bus;
+  if (bus.address().empty()) GTEST_SKIP() << "dbus-daemon cannot be started here";
+  test::Box box;
+  const test::Daemon daemon(bus.address(), box);
+  ASSERT_TRUE(daemon.waitUntilConnected()) << daemon.trouble();
+  const std::string seen = outputOf("busctl --address='" + bus.address() +
+                                    "' --xml-interface introspect org.kagami.Kagami1 "
+                                    "/org/kagami/Kagami1");
+  if (seen.find("<node") == std::string::npos) GTEST_SKIP() << "busctl: " << seen;
+  std::set<std::string> published;
+  for (const auto& file : std::filesystem::directory_iterator(KAGAMI_CONTROL_FOLDER)) {
+    if (file.path().extension() != ".xml") continue;
+    const std::string text = contentOf(file.path());
+    if (text.find("<node name=\"/org/kagami/Kagami1\">") == std::string::npos) continue;
+    published.merge(membersOf(text));
+  }
+  EXPECT_EQ(published, membersOf(seen));
+}
+
+// Users of every Debian, each in the group of its name. Two of these groups stand in for the
+// policy's groups, which the machine of the test need not have.
+constexpr const char* kViewer = "bin";
+constexpr const char* kOperator = "sys";
+constexpr const char* kAnybodyElse = "daemon";
+
+/// A system bus with the policy file that is installed.
+class Policy : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (geteuid() != 0) GTEST_SKIP() << "another user's calls can be made by root only";
+    std::string policy = contentOf(KAGAMI_POLICY);
+    policy = std::regex_replace(policy, std::regex("group=\"kagami-viewers\""),
+                                std::string("group=\"") + kViewer + "\"");
+    policy = std::regex_replace(policy, std::regex("group=\"kagami-operators\""),
+                                std::string("group=\"") + kOperator + "\"");
+    std::ofstream(folder_ / "kagami.conf") << policy;
+    std::ofstream(folder_ / "bus.conf")
+        << "<busconfig><listen>unix:path=" << (folder_ / "bus").string() << "</listen>"
+        << R"(<auth>EXTERNAL</auth><policy context="default"><allow user="*"/><deny own="*"/>
+              <deny send_type="method_call"/><allow send_type="signal"/>
+              <allow send_requested_reply="true" send_type="method_return"/>
+              <allow send_requested_reply="true" send_type="error"/>
+              <allow receive_type="method_call"/><allow receive_type="method_return"/>
+              <allow receive_type="error"/><allow receive_type="signal"/>
+              <allow send_destination="org.freedesktop.DBus"
+                     send_interface="org.freedesktop.DBus"/></policy><include>)"
+        << (folder_ / "kagami.conf").string() << "</include></busconfig>";
+    std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
+    bus_.emplace(std::vector<std::string>{"--config-file=" + (folder_ / "bus.conf").string()});
+    if (bus_->address().empty()) GTEST_SKIP() << "dbus-daemon cannot be started here";
+    daemon_.emplace(bus_->address(), box_);
+    ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();
+    if (outputOf("setpriv --version").find("util-linux") == std::string::npos)
+      GTEST_SKIP() << "setpriv is not installed (package util-linux)";
+  }
+
+  /// What `busctl` answers @p user.
+  [[nodiscard]] std::string answerTo(const std::string& user, const std::string& call) const {
+    return outputOf("setpriv --reuid=" + user + " --regid=" + user +
+                    " --clear-groups busctl --address='" + bus_->address() +
+                    "' call org.kagami.Kagami1 /org/kagami/Kagami1 " + call);
+  }
+
+  test::TemporaryFolder folder_;
+  std::optional<test::PrivateBus> bus_;
+  test::Box box_;
+  std::optional<test::Daemon> daemon_;
+};
+
+constexpr const char* kLook = "org.kagami.Kagami1 Status";
+constexpr const char* kReadAll = "org.freedesktop.DBus.Properties GetAll s org.kagami.Kagami1";
+constexpr const char* kOperate = "org.kagami.Kagami1.Control SetView u 3";
+constexpr const char* kMaintain = "org.kagami.Kagami1.Maintenance ReleaseScreen";
+constexpr const char* kDenied = "Access denied";
+
+TEST_F(Policy, AnybodyElseGetsNothing) {
+  for (const char* call : {kLook, kReadAll, kOperate, kMaintain})
+    EXPECT_THAT(answerTo(kAnybodyElse, call), HasSubstr(kDenied)) << call;
+  EXPECT_TRUE(box_.commands().empty());
+}
+
+TEST_F(Policy, AViewerLooksAndDoesNothing) {
+  EXPECT_THAT(answerTo(kViewer, kLook), HasSubstr("view_wanted"));
+  EXPECT_THAT(answerTo(kViewer, kReadAll), HasSubstr("\"Mode\""));
+  for (const char* call : {kOperate, kMaintain})
+    EXPECT_THAT(answerTo(kViewer, call), HasSubstr(kDenied)) << call;
+  EXPECT_TRUE(box_.commands().empty());
+}
+
+TEST_F(Policy, AnOperatorLooksAndOperates) {
+  EXPECT_THAT(answerTo(kOperator, kReadAll), HasSubstr("\"Mode\""));
+  EXPECT_THAT(answerTo(kOperator, kOperate), Not(HasSubstr(kDenied)));
+  EXPECT_EQ(box_.commands().size(), 1U);
+  EXPECT_THAT(answerTo(kOperator, kMaintain), HasSubstr(kDenied));
+}
+
+TEST_F(Policy, RootMaintains) {
+  EXPECT_THAT(outputOf("busctl --address='" + bus_->address() +
+                       "' call org.kagami.Kagami1 /org/kagami/Kagami1 " + kMaintain),
+              Not(HasSubstr(kDenied)));
+}
+
+}  // namespace
