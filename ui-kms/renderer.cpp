@@ -1,6 +1,10 @@
 #include "ui-kms/renderer.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <opencv2/core/utility.hpp>
@@ -82,13 +86,14 @@ rt::Result<void> Renderer::read(const RenderTarget& target, std::span<std::byte>
 }
 
 /// Drivers compile at the first draw. That belongs here, on the thread that may take its time
-/// (and whose scheduling policy the driver's threads inherit), not into the first picture.
+/// (and whose scheduling policy the driver's threads inherit), not into the first picture. A grey
+/// frame that comes out as another grey shows what no call has reported.
 std::expected<void, std::string> Renderer::warmUp(const RendererConfig& config) {
   const SizePx size = config.sources.empty() ? SizePx{64, 64} : config.sources.front();
-  const std::vector<std::byte> black(std::size_t{size.width} * size.height);
+  const std::vector<std::byte> grey(std::size_t{size.width} * size.height, std::byte{128});
   hal::Scene scene{.count = 1};
   hal::WarpPlan& plan = scene.layers[0].plan;
-  plan.source = {black.data(), size.width, size.height, hal::PixelFormat::kBayerRG8};
+  plan.source = {grey.data(), size.width, size.height, hal::PixelFormat::kBayerRG8};
   plan.H_camera_display = {1, 0, -16, 0, 1, -16, 0, 0, 1};  // inner and edge cells both
   plan.lens = {.fx_px = 1, .fy_px = 1, .max_radius = 1e9};
   const auto overlay = std::make_unique<hal::Overlay>();
@@ -98,12 +103,28 @@ std::expected<void, std::string> Renderer::warmUp(const RendererConfig& config) 
   const auto target = makeRenderTarget(config.width_px, config.height_px);
   if (!target) return std::unexpected(target.error());
   draw(*target, scene);
+  if (auto right = expectGrey(*target); !right) return right;
   scene.layers[1] = scene.layers[0];
   scene.layers[1].opacity = 0.5F;
   scene.count = 2;
   *overlay = {};  // the first that is made is another one
   draw(*target, scene);
-  return {};
+  return expectGrey(*target);
+}
+
+std::expected<void, std::string> Renderer::expectGrey(const RenderTarget& target) const {
+  constexpr int kGreySrgb = 188;  // of 128 in linear light
+  const hal::RectPx at = orientation_.turned(hal::RectPx{20, 20, 1, 1}, picture_);
+  std::array<GLubyte, 4> pixel{};
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
+  glReadPixels(at.x, at.y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel.data());
+  const bool grey = std::ranges::all_of(std::span(pixel).first<3>(),
+                                        [](int value) { return std::abs(value - kGreySrgb) <= 6; });
+  if (grey) return {};
+  return std::unexpected("the graphics driver (" + context_->renderer() + ") draws " +
+                         std::to_string(pixel[0]) + ", " + std::to_string(pixel[1]) + ", " +
+                         std::to_string(pixel[2]) + " for a grey of " + std::to_string(kGreySrgb) +
+                         ": install another one");
 }
 
 hal::RenderInstants Renderer::draw(const RenderTarget& target, const hal::Scene& scene,

@@ -79,6 +79,7 @@ class Renderer {
         glyphs_(std::make_unique<GlyphStore>()) {}
   [[nodiscard]] std::expected<void, std::string> makePasses(const RendererConfig& config);
   [[nodiscard]] std::expected<void, std::string> warmUp(const RendererConfig& config);
+  [[nodiscard]] std::expected<void, std::string> expectGrey(const RenderTarget& target) const;
   [[nodiscard]] Sources load(const hal::Scene& scene, hal::RenderInstants& instants);
   [[nodiscard]] bool needsBlending(const hal::Scene& scene, const Sources& sources) const;
   void drawLayers(const hal::Scene& scene, const Sources& sources, WarpPass::Output output);

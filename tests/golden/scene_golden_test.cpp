@@ -93,6 +93,36 @@ TEST_F(SceneGolden, FourLayersOfOneSizeKeepTheirOwnFrames) {
                layer(second_, {0, 360, 640, 360}, 0.5F), layer(first_, {640, 360, 640, 360})});
 }
 
+TEST_F(SceneGolden, CamerasOfDifferentSizesShareAPicture) {
+  second_ = Camera({1088, 1920}, hal::PixelFormat::kBayerGR8);
+  second_.look(1.2, 0.05, 0.1);
+  expectLikeReference("sizes", {layer(first_, kLeft), layer(second_, kRight)});
+}
+
+TEST_F(SceneGolden, AfterAChangeOfTheScreenThePictureIsThatOfANewRenderer) {
+  const auto pictureOf = [this](ui::Renderer& renderer) {
+    const auto target = ui::makeRenderTarget(1280, 720);
+    EXPECT_TRUE(target) << target.error();
+    renderer.draw(*target, scene({layer(first_), layer(second_, kRight, 0.5F)}));
+    std::vector<std::byte> rgba(std::size_t{4} * 1280 * 720);
+    EXPECT_TRUE(renderer.read(*target, rgba));
+    return rgba;
+  };
+  auto another = ui::Renderer::create({.width_px = 640, .height_px = 480});
+  ASSERT_TRUE(another) << another.error();
+  ASSERT_TRUE((*another)->resize(1280, 720));
+  const auto resized = pictureOf(**another);
+  const auto fresh = ui::Renderer::create({.width_px = 1280, .height_px = 720});
+  ASSERT_TRUE(fresh) << fresh.error();
+  EXPECT_TRUE(resized == pictureOf(**fresh));
+}
+
+TEST_F(SceneGolden, AScreenThatIsLargerThanTheDriverCanDrawIsNamed) {
+  const auto renderer = ui::Renderer::create({.width_px = 1'000'000, .height_px = 16});
+  ASSERT_FALSE(renderer);
+  EXPECT_NE(renderer.error().find("1000000x16"), std::string::npos) << renderer.error();
+}
+
 TEST_F(SceneGolden, AWholeLayerOfFullOpacityIsTheSinglePassItself) {
   const auto display = makeDisplay();
   ASSERT_NE(display, nullptr);
