@@ -47,48 +47,60 @@ void main() {
 }
 )";
 
-constexpr const char* kFragment = R"(#version 300 es
+constexpr const char* kLetter = R"(#version 300 es
 precision highp float;
 precision highp sampler2DArray;
 uniform sampler2DArray pages;
-flat in uint kind;
 flat in float page;
+flat in vec4 tint;
+in vec2 at;
+out vec4 colour;
+void main() {
+  colour = vec4(tint.rgb, tint.a * texelFetch(pages, ivec3(ivec2(at), int(page)), 0).r);
+}
+)";
+
+constexpr const char* kMark = R"(#version 300 es
+precision highp float;
+flat in uint kind;
 flat in vec4 tint;
 flat in vec2 half_px;
 flat in vec2 form;
 in vec2 at;
 out vec4 colour;
 void main() {
-  float cover;
-  if (kind == 0u) {
-    cover = texelFetch(pages, ivec3(ivec2(at), int(page)), 0).r;
-  } else if (kind == 3u) {
-    cover = clamp(form.y * 0.5 + 0.5 - abs(at.y), 0.0, 1.0);
-  } else {
-    vec2 beyond = abs(at) - half_px + form.x;
-    float rim = length(max(beyond, 0.0)) + min(max(beyond.x, beyond.y), 0.0) - form.x;
-    cover = kind == 1u ? 1.0 - smoothstep(-max(form.y, 0.01), 0.0, rim)
-                       : clamp(form.y * 0.5 + 0.5 - abs(rim + form.y * 0.5), 0.0, 1.0);
-  }
+  vec2 beyond = abs(at) - half_px + form.x;
+  float rim = length(max(beyond, 0.0)) + min(max(beyond.x, beyond.y), 0.0) - form.x;
+  float cover = kind == 1u   ? 1.0 - smoothstep(-max(form.y, 0.01), 0.0, rim)
+                : kind == 2u ? clamp(form.y * 0.5 + 0.5 - abs(rim + form.y * 0.5), 0.0, 1.0)
+                             : clamp(form.y * 0.5 + 0.5 - abs(at.y), 0.0, 1.0);
   colour = vec4(tint.rgb, tint.a * cover);
 }
 )";
 
 constexpr GLsizei kStride = sizeof(hal::OverlayItem);
 
-const void* at(std::size_t bytes) {
-  return reinterpret_cast<const void*>(bytes);
-}
-
 }  // namespace
 
+std::expected<OverlayPass::Program, std::string> OverlayPass::makeProgram(const char* pass,
+                                                                          const char* fragment) {
+  auto made = gl::makeProgram(pass, kVertex, fragment);
+  if (!made) return std::unexpected(made.error());
+  Program program;
+  program.program = std::move(*made);
+  program.picture_px = uniform(program.program, "picture_px");
+  program.turn = uniform(program.program, "turn");
+  return program;
+}
+
 std::expected<OverlayPass, std::string> OverlayPass::create(GlyphStore& store) {
-  auto program = gl::makeProgram("overlay", kVertex, kFragment);
-  if (!program) return std::unexpected(program.error());
   OverlayPass pass(store);
-  pass.program_ = std::move(*program);
-  pass.picture_px_at_ = uniform(pass.program_, "picture_px");
-  pass.turn_at_ = uniform(pass.program_, "turn");
+  auto letters = makeProgram("letters", kLetter);
+  if (!letters) return std::unexpected(letters.error());
+  pass.letters_ = std::move(*letters);
+  auto marks = makeProgram("marks", kMark);
+  if (!marks) return std::unexpected(marks.error());
+  pass.marks_ = std::move(*marks);
   pass.makeBuffers();
   return pass;
 }
@@ -103,44 +115,58 @@ void OverlayPass::makeBuffers() {
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 
-  using Item = hal::OverlayItem;
+  runs_.reserve(hal::Overlay::kMostItems);
   layout_ = gl::makeVertexArray();
   items_ = gl::makeBuffer();
   glBindVertexArray(layout_.get());
   glBindBuffer(GL_ARRAY_BUFFER, items_.get());
   glBufferData(GL_ARRAY_BUFFER, sizeof(hal::Overlay::items), nullptr, GL_DYNAMIC_DRAW);
-  static_assert(offsetof(Item, page) == offsetof(Item, kind) + 1);
-  glVertexAttribIPointer(0, 2, GL_UNSIGNED_BYTE, kStride, at(offsetof(Item, kind)));
-  glVertexAttribIPointer(1, 2, GL_UNSIGNED_SHORT, kStride, at(offsetof(Item, u_px)));
-  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride, at(offsetof(Item, colour)));
-  glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, kStride, at(offsetof(Item, x_px)));
-  glVertexAttribPointer(4, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(Item, radius_px)));
   for (GLuint attribute = 0; attribute < 5; ++attribute) {
     glEnableVertexAttribArray(attribute);
     glVertexAttribDivisor(attribute, 1);
   }
 }
 
+/// The attributes of the items from @p first on.
+void OverlayPass::point(std::uint32_t first) {
+  using Item = hal::OverlayItem;
+  static_assert(offsetof(Item, page) == offsetof(Item, kind) + 1);
+  const auto from = [first](std::size_t member) {
+    return reinterpret_cast<const void*>(first * sizeof(Item) + member);
+  };
+  glVertexAttribIPointer(0, 2, GL_UNSIGNED_BYTE, kStride, from(offsetof(Item, kind)));
+  glVertexAttribIPointer(1, 2, GL_UNSIGNED_SHORT, kStride, from(offsetof(Item, u_px)));
+  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride, from(offsetof(Item, colour)));
+  glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, kStride, from(offsetof(Item, x_px)));
+  glVertexAttribPointer(4, 2, GL_FLOAT, GL_FALSE, kStride, from(offsetof(Item, radius_px)));
+}
+
 void OverlayPass::resize(SizePx picture, Orientation orientation) {
   const auto right = orientation.turned(1, 0);
   const auto down = orientation.turned(0, 1);
   const std::array<float, 4> turn = {right[0], right[1], down[0], down[1]};  // by columns
-  glUseProgram(program_.get());
-  glUniform2f(picture_px_at_, static_cast<float>(picture.width),
-              static_cast<float>(picture.height));
-  glUniformMatrix2fv(turn_at_, 1, GL_FALSE, turn.data());
+  for (const Program* program : {&letters_, &marks_}) {
+    glUseProgram(program->program.get());
+    glUniform2f(program->picture_px, static_cast<float>(picture.width),
+                static_cast<float>(picture.height));
+    glUniformMatrix2fv(program->turn, 1, GL_FALSE, turn.data());
+  }
 }
 
 void OverlayPass::draw(const hal::Overlay& overlay) {
   if (overlay.generation != generation_) take(overlay);
-  if (count_ == 0) return;
-  glUseProgram(program_.get());
+  if (runs_.empty()) return;
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D_ARRAY, pages_.get());
   glBindVertexArray(layout_.get());
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
+  glBindBuffer(GL_ARRAY_BUFFER, items_.get());
+  for (const Run& run : runs_) {
+    glUseProgram((run.letters ? letters_ : marks_).program.get());
+    point(run.first);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, run.count);
+  }
   glDisable(GL_BLEND);
 }
 
@@ -156,7 +182,13 @@ void OverlayPass::take(const hal::Overlay& overlay) {
   glBufferSubData(GL_ARRAY_BUFFER, 0,
                   static_cast<GLsizeiptr>(overlay.count * sizeof(hal::OverlayItem)),
                   overlay.items.data());
-  count_ = static_cast<GLsizei>(overlay.count);
+  runs_.clear();
+  for (std::uint32_t i = 0; i < overlay.count; ++i) {
+    const bool letters = overlay.items[i].kind == hal::OverlayItem::Kind::kGlyph;
+    if (runs_.empty() || runs_.back().letters != letters)
+      runs_.push_back({.first = i, .letters = letters});
+    ++runs_.back().count;
+  }
   generation_ = overlay.generation;
   store_->adopt(generation_);
 }

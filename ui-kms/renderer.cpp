@@ -98,6 +98,7 @@ std::expected<void, std::string> Renderer::warmUp(const RendererConfig& config) 
   plan.lens = {.fx_px = 1, .fy_px = 1, .max_radius = 1e9};
   const auto overlay = std::make_unique<hal::Overlay>();
   overlay->add({.width_px = 8, .height_px = 8});
+  overlay->add({.kind = hal::OverlayItem::Kind::kGlyph, .width_px = 1, .height_px = 1});
   overlay->generation = 1;
   scene.overlay = overlay.get();
   const auto target = makeRenderTarget(config.width_px, config.height_px);

@@ -82,7 +82,7 @@ Scene& sceneOf(const benchmark::State& state) {
 struct Screen {
   std::unique_ptr<ui::Renderer> renderer;
   std::optional<ui::RenderTarget> target;
-  hal::Overlay overlay;  // a line of text
+  hal::Overlay overlay;  // a line of text on its plate
 };
 
 Screen* screenOf(const benchmark::State& state, std::string& error) {
@@ -107,6 +107,13 @@ Screen* screenOf(const benchmark::State& state, std::string& error) {
     if (hal::Typesetter* const typesetter = screen.renderer->typesetter()) {
       const auto height_px = static_cast<float>(config.height_px);
       typesetter->begin(screen.overlay);
+      screen.overlay.add({.colour = {8, 10, 13, 158},
+                          .x_px = 20,
+                          .y_px = height_px - 85,
+                          .width_px = 620,
+                          .height_px = 65,
+                          .radius_px = 16,
+                          .stroke_px = 5});
       typesetter->set(
           screen.overlay, "delayed 1.50 s   camera 7",
           {.x_px = 40, .baseline_px = height_px - 40, .width_px = 1'000, .size_px = height_px / 18},
