@@ -48,7 +48,7 @@ std::expected<std::unique_ptr<FrameHistory>, std::string> makeHistory(const Conf
                               use.shared ? HistorySharing::kShared : HistorySharing::kPrivate);
 }
 
-std::expected<void, std::string> lockMemory(const Config::Realtime& realtime,
+std::expected<void, std::string> lockMemory(const RealtimeSettings& realtime,
                                             const FrameHistory& history, Remarks& remarks) {
   if (!realtime.lock_memory) return {};
   const rt::MemoryLock lock = rt::lockMemory();

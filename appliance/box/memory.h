@@ -27,7 +27,7 @@ struct HistoryUse {
 /// Locks the process's memory, after the history: before it, its pages would be faulted in one by
 /// one.
 /// Errors  One line: it is refused and realtime.require is set.
-[[nodiscard]] std::expected<void, std::string> lockMemory(const Config::Realtime& realtime,
+[[nodiscard]] std::expected<void, std::string> lockMemory(const RealtimeSettings& realtime,
                                                           const FrameHistory& history,
                                                           Remarks& remarks);
 

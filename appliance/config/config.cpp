@@ -1,7 +1,6 @@
 #include "appliance/config/config.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -11,8 +10,6 @@
 
 namespace appliance {
 namespace {
-
-constexpr std::array<std::string_view, 3> kPolicies = {"other", "fifo", "rr"};
 
 void read(Section section, Config::Display& display) {
   section.word("backend", display.backend);
@@ -46,31 +43,6 @@ void read(Section section, Config::Record& record) {
   section.text("directory", record.directory);
   section.number("video_hz", record.video_hz, {1, 240, "Hz"});
   section.integer("video_width_px", record.video_width_px, {64, 7680, "px"});
-  section.end();
-}
-
-void readSchedule(Section section, ThreadSchedule& schedule) {
-  section.choice("policy", schedule.policy, kPolicies);
-  section.integer("priority", schedule.priority, {0, 99});
-  const std::vector<std::int64_t> cpus = section.named("cpus").integerListOr(
-      "cpus", {schedule.cpus.begin(), schedule.cpus.end()}, {0, 1023, "(CPU numbers)"});
-  schedule.cpus.assign(cpus.begin(), cpus.end());
-  section.end();
-  const bool realtime = schedule.policy != rt::SchedPolicy::kOther;
-  if (realtime && schedule.priority == 0)
-    section.fail("priority", "priority must be 1 to 99 under the policies fifo and rr");
-  if (!realtime && schedule.priority != 0)
-    section.fail("priority", "priority must be 0 under the policy other");
-}
-
-void read(Section section, Config::Realtime& realtime) {
-  section.flag("lock_memory", realtime.lock_memory);
-  section.flag("require", realtime.require);
-  readSchedule(section.sub("trigger"), realtime.trigger);
-  readSchedule(section.sub("receive"), realtime.receive);
-  readSchedule(section.sub("render"), realtime.render);
-  readSchedule(section.sub("draw"), realtime.draw);
-  readSchedule(section.sub("panel"), realtime.panel);
   section.end();
 }
 

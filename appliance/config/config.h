@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "appliance/box/realtime_settings.h"
 #include "appliance/capture/capture_settings.h"
-#include "appliance/config/thread_schedule.h"
 #include "appliance/depth/depth_settings.h"
 #include "appliance/light/light_settings.h"
 #include "appliance/network/network_settings.h"
@@ -53,17 +53,6 @@ struct Config {
     bool operator==(const Record&) const = default;
   };
 
-  struct Realtime {
-    bool lock_memory = true;
-    bool require = false;  ///< refuse to start without the permissions, instead of degrading
-    ThreadSchedule trigger{rt::SchedPolicy::kFifo, 80, {}};
-    ThreadSchedule receive{rt::SchedPolicy::kFifo, 70, {}};
-    ThreadSchedule render{rt::SchedPolicy::kFifo, 75, {}};
-    ThreadSchedule draw{rt::SchedPolicy::kFifo, 74, {}};  ///< workers of a software renderer
-    ThreadSchedule panel{};
-    bool operator==(const Realtime&) const = default;
-  };
-
   struct State {
     std::string directory = "/var/lib/kagami";
     std::string trace;  ///< empty: no trace is written
@@ -88,7 +77,7 @@ struct Config {
   DepthSettings depth_sensor;
   Director director;
   Record record;
-  Realtime realtime;
+  RealtimeSettings realtime;
   State state;
   Control control;
   std::vector<std::string> warnings;  ///< what was read and has no effect, one line each
