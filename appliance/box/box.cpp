@@ -122,6 +122,12 @@ void Box::setScreenReleased(bool released) {
   (void)parts_.handle({.verb = released ? "screen.release" : "screen.take"});
 }
 
+std::vector<BusObject> Box::busObjects() const {
+  std::vector<BusObject> objects;
+  parts_.addBusObjects(objects);
+  return objects;
+}
+
 Status Box::status() const {
   Status status{.degraded = remarks_.list()};
   parts_.report(status);

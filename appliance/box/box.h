@@ -11,6 +11,7 @@
 #include "appliance/box/part_list.h"
 #include "appliance/box/parts.h"
 #include "appliance/box/shared.h"
+#include "appliance/control/bus_object.h"
 #include "appliance/site/site.h"
 #include "appliance/status/status.h"
 
@@ -51,6 +52,8 @@ class Box final : public ControlSink, public StatusSource {
   void releaseTarget() override;
   void setScreenReleased(bool released) override;
   [[nodiscard]] Status status() const override;
+  /// The parts' own objects on the bus; they hold until the box is destroyed.
+  [[nodiscard]] std::vector<BusObject> busObjects() const;
 
  private:
   Box(const Site& site, const BoxParts& parts);

@@ -6,11 +6,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "appliance/status/status.h"
 
 namespace appliance {
 
+struct BusObject;
 struct Shared;
 
 /// Something asked of the box that is no command of the director.
@@ -48,6 +50,10 @@ class Part {
   /// Adds what the part knows to @p status: the core's members that are its own, a section,
   /// remarks. From before start() until after stop().
   virtual void report(Status& status) const = 0;
+
+  /// Adds the part's own objects on the bus to @p objects. They hold for the part's life; their
+  /// callbacks run on the main thread, between start() and stop().
+  virtual void addBusObjects(std::vector<BusObject>& /*objects*/) {}
 
   [[nodiscard]] virtual Answer handle(const Request& /*request*/) { return std::nullopt; }
 };

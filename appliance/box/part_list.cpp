@@ -59,6 +59,10 @@ void PartList::report(Status& status) const {
   for (const auto& part : parts_) part->report(status);
 }
 
+void PartList::addBusObjects(std::vector<BusObject>& objects) const {
+  for (const auto& part : parts_) part->addBusObjects(objects);
+}
+
 std::expected<void, std::string> PartList::handle(const Request& request) {
   for (const auto& part : parts_)
     if (const Answer answer = part->handle(request)) return *answer;

@@ -38,6 +38,8 @@ class PartList {
 
   void report(Status& status) const;
 
+  void addBusObjects(std::vector<BusObject>& objects) const;
+
   /// The answer of the first part that the request belongs to; an error if it belongs to none.
   [[nodiscard]] std::expected<void, std::string> handle(const Request& request);
 

@@ -12,10 +12,12 @@ namespace appliance {
 
 std::expected<std::unique_ptr<BoxService>, std::string> BoxService::start(
     EventLoop& loop, const ControlServer::Place& place, ControlSink& sink,
-    const StatusSource& source) {
+    const StatusSource& source, std::span<const BusObject> objects) {
   std::unique_ptr<BoxService> service(new BoxService(loop, source));
   if (place.bus != "none")
     service->control_ = std::make_unique<ControlServer>(loop, place, sink, source.status());
+  if (service->control_)
+    for (const BusObject& object : objects) service->control_->show(object);
   BoxService& serving = *service;
   auto added = loop.every(kTick, [&serving] { serving.tick(); });
   if (added) added = loop.every(kWatchdog, [] { (void)sd_notify(0, "WATCHDOG=1"); });

@@ -2,12 +2,14 @@
 
 #include <expected>
 #include <memory>
+#include <span>
 #include <string>
 
+#include "appliance/control/bus_object.h"
 #include "appliance/control/control_server.h"
-#include "appliance/status/status.h"
 #include "appliance/journal/status_journal.h"
 #include "appliance/loop/event_loop.h"
+#include "appliance/status/status.h"
 
 namespace appliance {
 
@@ -24,10 +26,11 @@ class BoxService {
   /// How long the start waits for the name on the bus.
   static constexpr rt::Nanoseconds kWaitForName = std::chrono::seconds(2);
 
-  /// Without a bus if @p place has none.
+  /// Without a bus if @p place has none. @p objects are shown beside the box itself, and outlive
+  /// the service.
   [[nodiscard]] static std::expected<std::unique_ptr<BoxService>, std::string> start(
       EventLoop& loop, const ControlServer::Place& place, ControlSink& sink,
-      const StatusSource& source);
+      const StatusSource& source, std::span<const BusObject> objects = {});
 
   BoxService(const BoxService&) = delete;
   BoxService& operator=(const BoxService&) = delete;

@@ -13,6 +13,8 @@
 #include "appliance/config/section.h"
 #include "appliance/trace/trace_file.h"
 #include "rt/periodic_loop.h"
+#include "tests/support/no_display.h"
+#include "tests/support/small_site.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/sample_part/sample_part.h"
 
@@ -27,43 +29,12 @@ using appliance::SampleSettings;
 using appliance::Shared;
 using appliance::Site;
 using appliance::Status;
+using test::NoDisplay;
+using test::smallSite;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
-
-/// Shows nothing.
-class NoDisplay final : public hal::Display {
- public:
-  [[nodiscard]] hal::DisplayMode mode() const override { return {320, 180, 60}; }
-  [[nodiscard]] std::string_view renderer() const override { return "none"; }
-  [[nodiscard]] std::string_view uploadReason() const override { return "a test"; }
-  [[nodiscard]] hal::Typesetter* typesetter() override { return nullptr; }
-  [[nodiscard]] rt::Result<hal::RenderInstants> render(const hal::Scene& /*scene*/) override {
-    return hal::RenderInstants{};
-  }
-  [[nodiscard]] rt::Result<rt::Timestamp> commit(std::uint64_t /*picture_id*/) override {
-    return rt::now();
-  }
-  [[nodiscard]] std::optional<hal::PageFlip> tryPopFlip() override { return std::nullopt; }
-  [[nodiscard]] std::optional<hal::DisplayTiming> timing() const override { return std::nullopt; }
-  [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override { return std::nullopt; }
-  [[nodiscard]] hal::ScreenStatus screen() const override { return {}; }
-  void releaseScreen() override {}
-  void takeScreen() override {}
-  void detach() override {}
-};
-
-/// Two small cameras that no part opens.
-Site smallSite() {
-  Site site;
-  for (const char* name : {"left", "right"})
-    site.rig.cameras.push_back(
-        {.name = name, .width_px = 64, .height_px = 64, .lens = {.fx_px = 60, .fy_px = 60}});
-  site.config.history.sets = 8;
-  site.config.realtime.lock_memory = false;
-  return site;
-}
 
 MadePart makeSample(const Shared& shared) {
   return appliance::makeSamplePart(shared, SampleSettings{});

@@ -1,12 +1,16 @@
 #include "tests/unit/sample_part/sample_part.h"
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "appliance/box/shared.h"
+#include "appliance/control/bus_callbacks.h"
+#include "appliance/control/bus_object.h"
 #include "rt/periodic_loop.h"
 
 namespace appliance {
@@ -36,11 +40,16 @@ class SamplePart final : public Part {
     if (turns == 0) status.degraded.push_back({"sample", "sample: it has not counted yet"});
   }
 
+  void addBusObjects(std::vector<BusObject>& objects) override;
+
   [[nodiscard]] Answer handle(const Request& request) override {
     if (request.verb != "sample.reset") return std::nullopt;
-    turns_ = 0;
+    reset();
     return std::expected<void, std::string>{};
   }
+
+  void reset() { turns_ = 0; }
+  [[nodiscard]] std::int64_t turns() const { return turns_.load(); }
 
  private:
   void run(const std::stop_token& stop) {
@@ -55,6 +64,29 @@ class SamplePart final : public Part {
   std::atomic<std::int64_t> turns_{0};
   rt::Thread thread_;
 };
+
+int getTurns(SamplePart& part, const char* /*property*/, sd_bus_message* reply) {
+  return sd_bus_message_append(reply, "x", part.turns());
+}
+
+int callReset(SamplePart& part, sd_bus_message* message, sd_bus_error* /*error*/) {
+  part.reset();
+  return sd_bus_reply_method_return(message, "");
+}
+
+const auto kTable = std::to_array<sd_bus_vtable>({
+    SD_BUS_VTABLE_START(0),
+    SD_BUS_PROPERTY("Turns", "x", (onProperty<SamplePart, getTurns>), 0, 0),
+    SD_BUS_METHOD("Reset", "", "", (onMethod<SamplePart, callReset>), SD_BUS_VTABLE_UNPRIVILEGED),
+    SD_BUS_VTABLE_END,
+});
+
+void SamplePart::addBusObjects(std::vector<BusObject>& objects) {
+  objects.push_back({.path = "/org/kagami/Kagami1/sample",
+                     .interface = "org.kagami.Kagami1.Sample",
+                     .vtable = kTable.data(),
+                     .target = this});
+}
 
 }  // namespace
 

@@ -5,10 +5,11 @@
 
 namespace appliance {
 
-/// The smallest part that has everything: settings, a thread, a section, a remark, a request. It
-/// counts the turns of its thread.
+/// The smallest part that has everything: settings, a thread, a section, a remark, a request, an
+/// object on the bus. It counts the turns of its thread.
 ///
 /// Requests  sample.reset: counts from 0 again.
+/// Bus       /org/kagami/Kagami1/sample: property Turns, method Reset.
 [[nodiscard]] MadePart makeSamplePart(const Shared& shared, const SampleSettings& settings);
 
 }  // namespace appliance
