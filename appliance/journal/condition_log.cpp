@@ -91,12 +91,14 @@ JournalLine ConditionLog::lineOf(const Entry& entry, rt::Timestamp now) {
   const Condition& condition = entry.last;
   if (entry.holds) {
     return {condition.level,
-            condition.text + (entry.unsaid > 1 ? timesSince(entry.unsaid) : std::string())};
+            condition.text + (entry.unsaid > 1 ? timesSince(entry.unsaid) : std::string()),
+            condition.word};
   }
   if (entry.unsaid > 0) {  // it began and ended since the last line
-    return {condition.level, condition.text + timesSince(entry.unsaid) + "; over now"};
+    return {condition.level, condition.text + timesSince(entry.unsaid) + "; over now",
+            condition.word};
   }
-  return {condition.end_level, condition.end + lasted(now - entry.began)};
+  return {condition.end_level, condition.end + lasted(now - entry.began), condition.end_word};
 }
 
 }  // namespace appliance

@@ -27,8 +27,10 @@ struct Condition {
   LogLevel level = LogLevel::kWarning;
   std::string text;  ///< the line at its begin; may change while it lasts, without a line
   LogLevel end_level = LogLevel::kNotice;
-  std::string end;           ///< the line at its end
-  std::uint64_t begins = 0;  ///< how often it began so far, if the source counts that; else 0
+  std::string end;                 ///< the line at its end
+  Word word = Word::kNothing;      ///< what text says
+  Word end_word = Word::kNothing;  ///< what end says
+  std::uint64_t begins = 0;        ///< how often it began so far, if the source counts that; else 0
 };
 
 /// Turns what holds now into journal lines: one at a condition's begin, one at its end. A condition

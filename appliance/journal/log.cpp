@@ -37,6 +37,15 @@ void log(LogLevel level, std::string_view line) {
                static_cast<int>(line.size()), line.data());
 }
 
+std::string withId(const JournalLine& line) {
+  if (line.word == Word::kNothing) return line.text;
+  return "[" + std::string(idOf(line.word)) + "] " + line.text;
+}
+
+void log(const JournalLine& line) {
+  log(line.level, withId(line));
+}
+
 bool isJournal(const char* journal_stream, const struct stat& file) {
   return journal_stream != nullptr &&
          journal_stream == std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino);

@@ -6,6 +6,8 @@
 
 #include <sys/stat.h>
 
+#include "appliance/words/word.h"
+
 namespace appliance {
 
 enum class LogLevel : std::uint8_t {
@@ -19,6 +21,7 @@ enum class LogLevel : std::uint8_t {
 struct JournalLine {
   LogLevel level = LogLevel::kInfo;
   std::string text;
+  Word word = Word::kNothing;  ///< its id stands before the text: "[camera-silent] camera 7 ..."
 
   friend bool operator==(const JournalLine&, const JournalLine&) = default;
 };
@@ -30,9 +33,11 @@ struct JournalLine {
 /// RT       Not safe.
 void log(LogLevel level, std::string_view line);
 
-inline void log(const JournalLine& line) {
-  log(line.level, line.text);
-}
+void log(const JournalLine& line);
+
+/// The line as it is written, without its level.
+[[nodiscard]] std::string withId(const JournalLine& line);
+
 inline void logInfo(std::string_view line) {
   log(LogLevel::kInfo, line);
 }

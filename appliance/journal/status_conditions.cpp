@@ -19,7 +19,9 @@ Condition ofCamera(std::size_t index, const CameraStatus& camera) {
                  : streams ? Now::kOver
                            : Now::kUnclear,
           .text = who + camera.reason,
-          .end = who + "a frame for every trigger again"};
+          .end = who + textOf(phrase<Word::kCameraStreams>()),
+          .word = camera.reason_word,
+          .end_word = Word::kCameraStreams};
 }
 
 Condition ofScreen(const Status& status) {
@@ -55,7 +57,21 @@ Condition ofRatio(const Status& status) {
           .now = status.genlock.reason == GenlockReason::kRatio ? Now::kHolds : Now::kOver,
           .level = LogLevel::kNotice,
           .text = "genlock " + status.genlock_text,
-          .end = "genlock: the trigger rate fits the screen's refresh rate again"};
+          .end = "genlock: " + textOf(phrase<Word::kGenlockFits>()),
+          .end_word = Word::kGenlockFits};
+}
+
+/// The word tells remarks apart. What a backend says inside of it is another kind of the same
+/// condition if it differs in more than its numbers.
+Condition ofRemark(const Remark& remark) {
+  const bool own = remark.word == Word::kNothing;
+  return {.key = remark.key + ": " +
+                 (own ? withoutNumbers(remark.text) : std::string(idOf(remark.word))),
+          .kind = withoutNumbers(remark.text),
+          .text = remark.text,
+          .end = textOf(phrase<Word::kOver>(remark.text)),
+          .word = remark.word,
+          .end_word = own ? Word::kOver : remark.word};
 }
 
 }  // namespace
@@ -64,10 +80,7 @@ std::vector<Condition> conditionsOf(const Status& status) {
   std::vector<Condition> conditions;
   for (std::size_t i = 0; i < status.cameras.size(); ++i)
     conditions.push_back(ofCamera(i, status.cameras[i]));
-  for (const Remark& remark : status.degraded)
-    conditions.push_back({.key = remark.key + ": " + withoutNumbers(remark.text),
-                          .text = remark.text,
-                          .end = "over: " + remark.text});
+  for (const Remark& remark : status.degraded) conditions.push_back(ofRemark(remark));
   conditions.push_back(ofScreen(status));
   conditions.push_back(ofGenlock(status));
   conditions.push_back(ofRatio(status));

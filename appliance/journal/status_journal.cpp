@@ -16,9 +16,9 @@ std::vector<JournalLine> StatusJournal::look(rt::Timestamp now, const Status& st
     const bool streams = camera.state == CameraState::kStreaming;
     const auto lost = losses_.look(now, camera.name, camera.frames_lost, streams);
     if (!lost) continue;
-    lines.push_back({LogLevel::kWarning, cameraTitle(i, camera.name) + std::to_string(*lost) +
-                                             " frames lost: check its cable and the network's "
-                                             "load"});
+    lines.push_back({LogLevel::kWarning,
+                     cameraTitle(i, camera.name) + textOf(phrase<Word::kCameraFramesLost>(*lost)),
+                     Word::kCameraFramesLost});
   }
   return lines;
 }

@@ -156,9 +156,9 @@ TEST(StatusJournal, SaysWhatBecomesLessThanConfiguredAndThatItIsOver) {
   StatusJournal journal;
   EXPECT_EQ(look(journal, {.degraded = {{"panel", "panel: gone for 1 s"}}}, 0).size(), 1u);
   EXPECT_TRUE(look(journal, {.degraded = {{"panel", "panel: gone for 2 s"}}}, 100).empty());
-  EXPECT_THAT(
-      look(journal, {}, 200),
-      ElementsAre(JournalLine{LogLevel::kNotice, "over: panel: gone for 2 s (after 0.2 s)"}));
+  EXPECT_THAT(look(journal, {}, 200),
+              ElementsAre(JournalLine{LogLevel::kNotice, "over: panel: gone for 2 s (after 0.2 s)",
+                                      appliance::Word::kOver}));
   EXPECT_EQ(look(journal, {.degraded = {{"panel", "panel: gone for 1 s"}}}, 300).size(), 1u);
 }
 
@@ -213,6 +213,18 @@ TEST(Log, KnowsTheJournalByDeviceAndInodeNotByTheVariableAlone) {
   EXPECT_FALSE(appliance::isJournal("9:12346", file));
   EXPECT_FALSE(appliance::isJournal("", file));
   EXPECT_FALSE(appliance::isJournal(nullptr, file));
+}
+
+TEST(StatusJournal, TellsRemarksApartByTheirWordsAndWritesTheirIds) {
+  StatusJournal journal;
+  const auto remark = [](unsigned sets) {
+    return appliance::remarkOf(
+        "history", appliance::phrase<appliance::Word::kHistoryShort>(sets, sets / 40.0, 300));
+  };
+  const auto lines = look(journal, {.degraded = {remark(200)}}, 0);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(appliance::withId(lines[0]), StartsWith("[history-short] memory is short: "));
+  EXPECT_TRUE(look(journal, {.degraded = {remark(100)}}, 100).empty()) << "the same, in numbers";
 }
 
 }  // namespace
