@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "appliance/depth/depth_board.h"
+#include "appliance/depth/depth_sight.h"
 #include "hal/depth_sensor.h"
 #include "rt/clock.h"
 
@@ -17,6 +18,7 @@ struct DepthReport {
   hal::DepthStatus sensor;
   double rate_hz = 0;                  ///< of the pictures of the last seconds
   std::optional<rt::Nanoseconds> age;  ///< since the newest picture's exposure; none: no picture
+  std::optional<DepthSight> sight;     ///< of the newest picture
   std::vector<DepthReaderStatus> readers;
 };
 

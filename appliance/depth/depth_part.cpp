@@ -14,18 +14,26 @@ namespace appliance {
 namespace {
 
 StatusSection sectionOf(const DepthReport& report) {
-  return {.key = "depth",
-          .line = depthText(report),
-          .values = {{"rate_hz", report.rate_hz},
-                     {"frames", static_cast<std::int64_t>(report.sensor.frames)},
-                     {"lost", static_cast<std::int64_t>(report.sensor.lost)},
-                     {"returns", static_cast<std::int64_t>(report.sensor.returns)}}};
+  StatusSection section{.key = "depth",
+                        .line = depthText(report),
+                        .values = {{"rate_hz", report.rate_hz},
+                                   {"frames", static_cast<std::int64_t>(report.sensor.frames)},
+                                   {"lost", static_cast<std::int64_t>(report.sensor.lost)},
+                                   {"returns", static_cast<std::int64_t>(report.sensor.returns)}}};
+  if (report.sight) section.values.push_back({"measured_share", report.sight->measured_share});
+  for (const DepthReaderStatus& reader : report.readers) {
+    section.values.push_back(
+        {"reader_" + reader.name + "_lost", static_cast<std::int64_t>(reader.lost)});
+  }
+  return section;
 }
 
 class DepthPart final : public Part {
  public:
-  DepthPart(const Shared& shared, std::unique_ptr<hal::DepthSensor> sensor)
-      : shared_(shared), loop_(std::move(sensor), shared.depth) {}
+  DepthPart(const Shared& shared, std::unique_ptr<hal::DepthSensor> sensor, DepthReader& reader)
+      : shared_(shared),
+        loop_(std::move(sensor), shared.depth),
+        sight_(std::make_unique<DepthSightReader>(reader)) {}
 
   [[nodiscard]] std::string_view name() const override { return "depth"; }
 
@@ -39,7 +47,8 @@ class DepthPart final : public Part {
   void stop() override { thread_ = {}; }
 
   void report(Status& status) const override {
-    const DepthReport report = loop_.report();
+    DepthReport report = loop_.report();
+    report.sight = sight_->look();
     status.sections.push_back(sectionOf(report));
     if (const Phrase trouble = depthTrouble(report); !trouble.empty())
       status.degraded.push_back(remarkOf("depth", trouble));
@@ -48,6 +57,7 @@ class DepthPart final : public Part {
  private:
   const Shared& shared_;
   DepthLoop loop_;
+  const std::unique_ptr<DepthSightReader> sight_;  // main's
   rt::Thread thread_;
 };
 
@@ -61,7 +71,9 @@ MadePart makeDepthPart(const Shared& shared) {
     shared.remarks.add("depth", phrase<Word::kDepthMissing>(sensor.error()));
     return nullptr;
   }
-  return std::make_unique<DepthPart>(shared, std::move(*sensor));
+  auto reader = shared.depth.openReader("status", 1);
+  if (!reader) return std::unexpected(reader.error());
+  return std::make_unique<DepthPart>(shared, std::move(*sensor), **reader);
 }
 
 }  // namespace appliance

@@ -1,6 +1,7 @@
 #include "appliance/depth/depth_text.h"
 
 #include <chrono>
+#include <cmath>
 
 namespace appliance {
 namespace {
@@ -28,6 +29,12 @@ Phrase picturesOf(const DepthReport& report) {
                                                    report.rate_hz);
 }
 
+Phrase wordsOf(const DepthSight& sight) {
+  const auto percent = std::lround(100 * sight.measured_share);
+  if (!sight.middle_m) return phrase<Word::kDepthSightWithoutMiddle>(percent);
+  return phrase<Word::kDepthSight>(percent, *sight.middle_m);
+}
+
 std::string readerText(const DepthReaderStatus& reader) {
   std::string text = textOf(phrase<Word::kDepthReader>(reader.name, reader.taken, reader.lost));
   if (reader.refused > 0)
@@ -45,6 +52,7 @@ std::string depthText(const DepthReport& report) {
   text += "; " + textOf(phrase<Word::kDepthCounts>(sensor.frames, sensor.lost));
   if (sensor.without_colour > 0)
     text += ", " + textOf(phrase<Word::kDepthColourMissing>(sensor.without_colour));
+  if (report.sight) text += "; " + textOf(wordsOf(*report.sight));
   if (sensor.returns > 0) text += "; " + textOf(phrase<Word::kDepthReturns>(sensor.returns));
   if (report.age && sensor.state != hal::DepthState::kStreaming) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(*report.age);

@@ -47,6 +47,14 @@ TEST(DepthText, NamesEachReaderThatTookAPicture) {
   EXPECT_THAT(depthText(report), HasSubstr("refused 2 times because it kept 1 pictures"));
 }
 
+TEST(DepthText, SaysWhatTheSensorSees) {
+  DepthReport report{.sensor = {.state = hal::DepthState::kStreaming, .name = "Acme", .frames = 9},
+                     .sight = appliance::DepthSight{.measured_share = 0.824, .middle_m = 3.944}};
+  EXPECT_THAT(depthText(report), HasSubstr("; measures 82 % of its pixels, 3.94 m in the middle"));
+  report.sight->middle_m.reset();
+  EXPECT_THAT(depthText(report), HasSubstr("nothing in the middle"));
+}
+
 TEST(DepthText, SaysHowOldTheLastPictureOfALostSensorIs) {
   DepthReport report{.sensor = {.state = hal::DepthState::kLost, .name = "Acme", .frames = 9},
                      .age = std::chrono::milliseconds(12'300)};
