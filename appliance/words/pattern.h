@@ -9,9 +9,9 @@
 
 namespace appliance::words {
 
-/// A placeholder of a pattern: {name}, {name:d} or {name:.2}.
+/// A placeholder of a pattern: {name}, {name:d}, {name:g} or {name:.2}.
 struct Placeholder {
-  enum class Kind : std::uint8_t { kText, kWhole, kDecimals };
+  enum class Kind : std::uint8_t { kText, kWhole, kShortest, kDecimals };
 
   std::string_view name;
   Kind kind = Kind::kText;
@@ -60,6 +60,8 @@ constexpr std::optional<Piece> takePiece(std::string_view& rest) {
   const std::string_view format = inside.substr(colon + 1);
   if (format == "d") {
     found.kind = Placeholder::Kind::kWhole;
+  } else if (format == "g") {
+    found.kind = Placeholder::Kind::kShortest;
   } else if (format.size() == 2 && format[0] == '.' && format[1] >= '1' && format[1] <= '9') {
     found.kind = Placeholder::Kind::kDecimals;
     found.decimals = format[1] - '0';

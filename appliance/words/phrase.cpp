@@ -37,9 +37,11 @@ std::string_view textArgument(const Phrase& phrase, std::size_t index) {
   return rest.substr(0, rest.find('\0'));
 }
 
-std::string numberText(double number, int decimals) {
+std::string numberText(double number, const words::Placeholder& how) {
   std::array<char, 48> text{};
-  const int length = std::snprintf(text.data(), text.size(), "%.*f", decimals, number);
+  const int length = how.kind == words::Placeholder::Kind::kShortest
+                         ? std::snprintf(text.data(), text.size(), "%.6g", number)
+                         : std::snprintf(text.data(), text.size(), "%.*f", how.decimals, number);
   const auto used = static_cast<std::size_t>(length);
   return {text.data(), std::min(used, text.size() - 1)};
 }
@@ -70,9 +72,8 @@ std::string formatted(std::string_view pattern, const Phrase& phrase) {
     for (std::size_t i = 0; i < arguments->count; ++i) {
       const Placeholder& argument = arguments->all[i];
       if (argument.name == piece->placeholder->name) {
-        text += argument.isText()
-                    ? std::string(textArgument(phrase, texts))
-                    : numberText(phrase.numbers[numbers], piece->placeholder->decimals);
+        text += argument.isText() ? std::string(textArgument(phrase, texts))
+                                  : numberText(phrase.numbers[numbers], *piece->placeholder);
         break;
       }
       ++(argument.isText() ? texts : numbers);

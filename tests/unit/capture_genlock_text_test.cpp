@@ -19,12 +19,13 @@ std::string ratioText(double trigger_hz, double refresh_hz) {
 
 TEST(GenlockText, NamesTheRatioAndTheRatesThatWouldLock) {
   EXPECT_EQ(ratioText(40, 60),
-            "free-running: triggers of 40 Hz on a screen of 60 Hz are 2:3: trigger.rate_hz = 30 or "
-            "60 would lock");
-  EXPECT_THAT(ratioText(50, 59.94), HasSubstr("5:6: trigger.rate_hz = 29.97 or 59.94 would lock"));
-  EXPECT_THAT(ratioText(120, 60), HasSubstr("2:1: trigger.rate_hz = 60 would lock"));
-  EXPECT_THAT(ratioText(61, 60), HasSubstr("in no simple ratio: trigger.rate_hz = 60 would lock"));
-  EXPECT_THAT(ratioText(59, 60), HasSubstr("in no simple ratio: trigger.rate_hz = 30 or 60"));
+            "free-running: triggers of 40 Hz on a screen of 60 Hz are 2 to 3; trigger.rate_hz = 30 "
+            "or 60 would lock");
+  EXPECT_THAT(ratioText(50, 59.94),
+              HasSubstr("5 to 6; trigger.rate_hz = 29.97 or 59.94 would lock"));
+  EXPECT_THAT(ratioText(120, 60), HasSubstr("2 to 1; trigger.rate_hz = 60 would lock"));
+  EXPECT_THAT(ratioText(61, 60), HasSubstr("in no simple ratio; trigger.rate_hz = 60 would lock"));
+  EXPECT_THAT(ratioText(59, 60), HasSubstr("in no simple ratio; trigger.rate_hz = 30 or 60"));
 }
 
 TEST(GenlockText, SaysHowALockStands) {
@@ -37,7 +38,7 @@ TEST(GenlockText, SaysHowALockStands) {
                                        40);
   EXPECT_EQ(text,
             "locked: a trigger every 2 vblanks of 80 Hz, 6.4 us rms off, page flip 25.0 ms after "
-            "the trigger; held over, no page flips just now");
+            "the trigger; held over, no page flips at present");
 }
 
 TEST(GenlockText, HasALineForEveryState) {

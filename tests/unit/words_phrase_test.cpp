@@ -48,7 +48,7 @@ TEST(Phrase, CutsTextThatDoesNotFitBetweenTwoCharacters) {
 
 TEST(Pattern, OfAnotherLanguageMayReorderItsPlaceholders) {
   const Phrase late = phrase<Word::kCameraSilent>(2.55);
-  EXPECT_EQ(formatted("{seconds:.2} / {seconds:d}", late), "2.55 / 3");
+  EXPECT_EQ(formatted("{seconds:.2} / {seconds:d} / {seconds:g}", late), "2.55 / 3 / 2.55");
   EXPECT_EQ(formatted("nothing of it", late), "nothing of it");
   EXPECT_EQ(formatted("{unknown}", late), "") << "the words' test finds such a pattern";
 }
