@@ -42,7 +42,7 @@ class PictureRecorder final : public PictureObserver {
   std::uint32_t pictures_in_mode_ = 0;
   std::uint32_t view_ = 0;  // the last picture's
   std::uint32_t pictures_of_view_ = 0;
-  std::array<bool, 4> kept_{};                 // a still of that mode exists
+  std::array<bool, kModes.size()> kept_{};     // a still of that mode exists
   std::array<bool, kMaxCameras> view_kept_{};  // a still of that view exists, from a sweep
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,21 +14,42 @@
 
 namespace hal {
 
-/// The keys of the panel. Names are what stands on the panel and in scripts.
+/// The keys of the panel.
 enum class Button : std::uint8_t {
-  kLive,         ///< live
-  kFreeze,       ///< freeze: stop and go on
-  kDelayLess,    ///< delay-less
-  kDelayMore,    ///< delay-more
-  kStepBack,     ///< step-back: one trigger earlier
-  kStepForward,  ///< step-forward
-  kViewLeft,     ///< view-left: the neighbouring camera
-  kViewRight,    ///< view-right
-  kSweep,        ///< sweep: walk around the stopped moment
+  kLive,
+  kFreeze,  ///< stop and go on
+  kDelayLess,
+  kDelayMore,
+  kStepBack,  ///< one trigger earlier
+  kStepForward,
+  kViewLeft,  ///< the neighbouring camera
+  kViewRight,
+  kSweep,  ///< walk around the stopped moment
+  kSpeed,  ///< slow motion
 };
-inline constexpr std::array<std::string_view, 9> kButtonNames = {
-    "live",         "freeze",    "delay-less", "delay-more", "step-back",
-    "step-forward", "view-left", "view-right", "sweep"};
+
+struct ButtonRow {
+  Button button;
+  std::string_view name;  ///< on the panel, in scripts and in the names of GPIO lines
+};
+
+inline constexpr std::array<ButtonRow, 10> kButtons = {{{Button::kLive, "live"},
+                                                        {Button::kFreeze, "freeze"},
+                                                        {Button::kDelayLess, "delay-less"},
+                                                        {Button::kDelayMore, "delay-more"},
+                                                        {Button::kStepBack, "step-back"},
+                                                        {Button::kStepForward, "step-forward"},
+                                                        {Button::kViewLeft, "view-left"},
+                                                        {Button::kViewRight, "view-right"},
+                                                        {Button::kSweep, "sweep"},
+                                                        {Button::kSpeed, "speed"}}};
+static_assert(std::ranges::all_of(kButtons, [](const ButtonRow& row) {
+  return &row == &kButtons[static_cast<std::size_t>(row.button)];
+}));
+
+[[nodiscard]] constexpr std::string_view nameOf(Button button) {
+  return kButtons[static_cast<std::size_t>(button)].name;
+}
 
 struct ButtonEvent {
   Button button;
@@ -45,6 +68,17 @@ struct PanelSettings {
   std::chrono::milliseconds debounce{10};
   bool operator==(const PanelSettings&) const = default;
 };
+
+struct LampRow {
+  Lamp lamp;
+  std::string_view name;  ///< on the panel and in the names of GPIO lines
+};
+
+inline constexpr std::array<LampRow, 3> kLamps = {
+    {{Lamp::kLive, "live"}, {Lamp::kDelayed, "delayed"}, {Lamp::kFrozen, "frozen"}}};
+static_assert(std::ranges::all_of(kLamps, [](const LampRow& row) {
+  return &row == &kLamps[static_cast<std::size_t>(row.lamp)];
+}));
 
 /// The buttons and lamps of one box.
 ///

@@ -43,6 +43,7 @@ struct Config {
   struct Director {
     std::vector<double> delay_ladder_s{0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30};
     double sweep_views_per_s = 10;
+    double idle_home_s = 0;  ///< 0: never
     bool operator==(const Director&) const = default;
   };
 

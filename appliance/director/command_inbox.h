@@ -21,9 +21,6 @@ struct CommandEvent {
   rt::Timestamp at;
 };
 
-/// More than a person can press between two pictures.
-inline constexpr std::uint32_t kMostCommands = 64;
-
 /// The end of the inbox that one thread gives its commands to.
 ///
 /// Threads  give(): one thread. refused(): any.

@@ -1,35 +1,57 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 
+#include "appliance/director/rate.h"
 #include "rt/clock.h"
 
 namespace appliance {
 
+/// What is shown. It follows from the director's state; it is not that state.
 enum class Mode : std::uint8_t {
   kLive,
   kDelayed,
   kFrozen,
   kSweep,  ///< frozen, while the view walks along the arc
+  kSlow,   ///< stored time, played more slowly than it passed
 };
 
-/// As the trace and the control interface write them, in the order of Mode.
-inline constexpr std::array<std::string_view, 4> kModeNames = {"live", "delayed", "frozen",
-                                                               "sweep"};
+struct ModeRow {
+  Mode mode;
+  std::string_view name;  ///< in the trace, the status and on the bus
+};
+
+inline constexpr std::array<ModeRow, 5> kModes = {{{Mode::kLive, "live"},
+                                                   {Mode::kDelayed, "delayed"},
+                                                   {Mode::kFrozen, "frozen"},
+                                                   {Mode::kSweep, "sweep"},
+                                                   {Mode::kSlow, "slow"}}};
+static_assert(std::ranges::all_of(kModes, [](const ModeRow& row) {
+  return &row == &kModes[static_cast<std::size_t>(row.mode)];
+}));
 
 [[nodiscard]] constexpr std::string_view nameOf(Mode mode) {
-  return kModeNames[static_cast<std::size_t>(mode)];
+  return kModes[static_cast<std::size_t>(mode)].name;
+}
+
+[[nodiscard]] constexpr std::optional<Mode> modeNamed(std::string_view name) {
+  const auto* row = std::ranges::find(kModes, name, &ModeRow::name);
+  if (row == kModes.end()) return std::nullopt;
+  return row->mode;
 }
 
 /// Why another view than the wanted one is shown.
 enum class Substitute : std::uint8_t {
   kNone,
-  kLost,     ///< the wanted camera sends nothing
-  kNoFrame,  ///< it has no picture of this moment
+  kLost,       ///< the wanted camera sends nothing, or came back less than a second ago
+  kNoFrame,    ///< it has no picture of this moment
+  kCannotSee,  ///< the target lies outside its picture
 };
 
 /// The director's decision for one output picture: which stored moment of which view.
@@ -37,10 +59,11 @@ struct Shot {
   Mode mode = Mode::kLive;
   Substitute substitute = Substitute::kNone;
   bool at_history_end = false;      ///< the moment asked for is no longer (or not yet) stored
+  Rate rate = Rate::kFull;          ///< of the playback
   std::uint32_t camera_wanted = 0;  ///< from 0
   std::uint32_t camera_shown = 0;
   std::uint64_t trigger = 0;  ///< 0: nothing is stored that could be shown
-  std::uint64_t hold = 0;     ///< the moment whose frames are to stay; 0: none
+  std::uint64_t hold = 0;     ///< the moment whose frames must stay, of all cameras; 0: none
   rt::Nanoseconds delay{};    ///< behind the newest stored moment
 
   friend bool operator==(const Shot&, const Shot&) = default;

@@ -35,7 +35,7 @@ class LineWriter {
   std::string& line_;
 };
 
-/// How long ago the stopped moment was; nothing for the newest one.
+/// How long ago the shown moment was, nothing for the newest one.
 void writeAge(LineWriter& out, rt::Nanoseconds delay) {
   constexpr rt::Nanoseconds kShownAsZero = std::chrono::milliseconds(5);
   if (delay < kShownAsZero) return;
@@ -60,14 +60,30 @@ void writeMode(LineWriter& out, const Shot& shot) {
       out << "SWEEP";
       writeAge(out, shot.delay);
       break;
+    case Mode::kSlow:
+      out << "SLOW " << nameOf(shot.rate);
+      writeAge(out, shot.delay);
+      break;
   }
+}
+
+std::string_view reasonOf(Substitute substitute) {
+  switch (substitute) {
+    case Substitute::kNone:
+      break;
+    case Substitute::kLost:
+      return " lost";
+    case Substitute::kNoFrame:
+      return " has no picture of this moment";
+    case Substitute::kCannotSee:
+      return " cannot see the target";
+  }
+  return "";
 }
 
 void writeBadge(LineWriter& out, const Shot& shot) {
   if (shot.substitute == Substitute::kNone) return;
-  const std::uint64_t wanted = shot.camera_wanted + 1;
-  out << "   camera " << wanted
-      << (shot.substitute == Substitute::kLost ? " lost" : " has no picture of this moment");
+  out << "   camera " << std::uint64_t{shot.camera_wanted} + 1 << reasonOf(shot.substitute);
   if (shot.camera_shown != shot.camera_wanted) {
     out << ": showing " << std::uint64_t{shot.camera_shown} + 1;
   } else if (shot.trigger != 0) {

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "rt/annotations.h"
 
 namespace appliance {
+
+/// More views than any arc we build; fixed so that real-time code can use arrays.
+inline constexpr std::size_t kMostViews = 64;
 
 /// Triggers of which frames are stored, both ends included; 0, 0 when there are none.
 struct StoredRange {
@@ -31,6 +35,8 @@ class StoredViews {
   [[nodiscard]] virtual std::uint64_t heldTrigger() const RT_SAFE { return 0; }
   /// Whether the camera delivers.
   [[nodiscard]] virtual bool living(std::uint32_t camera) const RT_SAFE = 0;
+  /// Whether the target lies in the camera's picture. Without geometry every camera sees it.
+  [[nodiscard]] virtual bool sees(std::uint32_t /*camera*/) const RT_SAFE { return true; }
 };
 
 }  // namespace appliance

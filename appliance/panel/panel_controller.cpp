@@ -1,6 +1,7 @@
 #include "appliance/panel/panel_controller.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace appliance {
@@ -9,22 +10,26 @@ namespace {
 enum class WhenHeld : std::uint8_t { kNothing, kRepeats, kGoesHome };
 
 struct Meaning {
+  hal::Button button;
   Command::Kind kind;
   WhenHeld held;
 };
 
-/// In the order of hal::Button.
-constexpr std::array<Meaning, hal::kButtonNames.size()> kMeanings = {{
-    {Command::Kind::kGoLive, WhenHeld::kGoesHome},
-    {Command::Kind::kFreezeToggle, WhenHeld::kNothing},
-    {Command::Kind::kDelayLess, WhenHeld::kRepeats},
-    {Command::Kind::kDelayMore, WhenHeld::kRepeats},
-    {Command::Kind::kStepBack, WhenHeld::kRepeats},
-    {Command::Kind::kStepForward, WhenHeld::kRepeats},
-    {Command::Kind::kViewLeft, WhenHeld::kRepeats},
-    {Command::Kind::kViewRight, WhenHeld::kRepeats},
-    {Command::Kind::kSweep, WhenHeld::kNothing},
+constexpr std::array<Meaning, hal::kButtons.size()> kMeanings = {{
+    {hal::Button::kLive, Command::Kind::kGoLive, WhenHeld::kGoesHome},
+    {hal::Button::kFreeze, Command::Kind::kFreezeToggle, WhenHeld::kNothing},
+    {hal::Button::kDelayLess, Command::Kind::kDelayLess, WhenHeld::kRepeats},
+    {hal::Button::kDelayMore, Command::Kind::kDelayMore, WhenHeld::kRepeats},
+    {hal::Button::kStepBack, Command::Kind::kStepBack, WhenHeld::kRepeats},
+    {hal::Button::kStepForward, Command::Kind::kStepForward, WhenHeld::kRepeats},
+    {hal::Button::kViewLeft, Command::Kind::kViewLeft, WhenHeld::kRepeats},
+    {hal::Button::kViewRight, Command::Kind::kViewRight, WhenHeld::kRepeats},
+    {hal::Button::kSweep, Command::Kind::kSweep, WhenHeld::kNothing},
+    {hal::Button::kSpeed, Command::Kind::kSlower, WhenHeld::kNothing},
 }};
+static_assert(std::ranges::all_of(kMeanings, [](const Meaning& meaning) {
+  return &meaning == &kMeanings[static_cast<std::size_t>(meaning.button)];
+}));
 
 const Meaning& meaningOf(hal::Button button) {
   return kMeanings[static_cast<std::size_t>(button)];

@@ -60,7 +60,7 @@ class PanelController {
   void letGo(hal::Button button);
 
   Level level_;
-  std::array<bool, hal::kButtonNames.size()> down_{};
+  std::array<bool, hal::kButtons.size()> down_{};
   std::optional<Held> held_;
   rt::Timestamp next_check_;  // of the contacts, while a key is down
 };

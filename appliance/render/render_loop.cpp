@@ -33,14 +33,13 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
       hold_(parts.frames),
       director_(parameters.director),
       views_(parts.rig.cameras.size()),
-      allowance_(kShareOfPictures, parameters.trigger_period) {}
+      allowance_(kShareOfPictures, parameters.trigger_period) {
+  director_.setArc(arcOf(parts.rig));
+}
 
 void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
-    // A shown camera that falls silent rings no bell; a period later its neighbour takes over.
-    const rt::Timestamp period_later = rt::now() + parameters_.trigger_period;
-    (void)parts_.board.wake_render.waitUntil(
-        std::min(parts_.display.nextCall().value_or(period_later), period_later));
+    (void)parts_.board.wake_render.waitUntil(nextWake(rt::now()));
     rt::sleepUntil(allowance_.nextBegin());
     turn();
   }
@@ -48,11 +47,21 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
   parts_.display.detach();
 }
 
+/// A shown camera that falls silent rings no bell; a period later its neighbour takes over. What
+/// moves needs every vblank.
+rt::Timestamp RenderLoop::nextWake(rt::Timestamp now) const noexcept {
+  const rt::Timestamp latest = now + parameters_.trigger_period;
+  const rt::Timestamp wake = std::min(parts_.display.nextCall().value_or(latest), latest);
+  if (!director_.moving()) return wake;
+  return std::min(wake, nextMovingPicture(now, parts_.display.timing()).value_or(wake));
+}
+
 void RenderLoop::turn() noexcept {
   const rt::Timestamp wake = rt::now();
   takeCommands();
   Wanted wanted;
-  wanted.shot = director_.tick(wake, parameters_.trigger_period, hold_,
+  wanted.picture = presentationOf(wake, parts_.display.timing());
+  wanted.shot = director_.tick(wanted.picture, parameters_.trigger_period, hold_,
                                std::span(commands_).first(command_count_));
   command_count_ = 0;
   hold_.keep(wanted.shot.hold);
@@ -207,6 +216,8 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
   if (drawn && frame && new_live) {
     noteReady(frame->frame);
     if (locked_) rt::sleepUntil(locked_->earliestCommit(wanted.trigger_edge));
+  } else if (drawn && director_.moving()) {
+    rt::sleepUntil(wanted.picture.earliestCommit());
   }
   const auto commit = drawn ? parts_.display.commit(record.picture_id)
                             : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));

@@ -91,6 +91,7 @@ class RenderLoop {
 
  private:
   struct Wanted {
+    Presentation picture;
     Shot shot;
     rt::Timestamp trigger_edge;  // of the shown frame
     std::uint64_t overlay = 0;   // its generation
@@ -100,6 +101,7 @@ class RenderLoop {
     rt::Timestamp target_point_end;
   };
 
+  [[nodiscard]] rt::Timestamp nextWake(rt::Timestamp now) const noexcept;
   void turn() noexcept;
   void takeCommands() noexcept;
   void followScreen() noexcept;

@@ -39,7 +39,8 @@ RenderParameters parametersOf(const Config& config) {
           .zoom = config.display.zoom,
           .pixel_format = config.cameras.pixel_format,
           .director = {.sweep_views_per_second = config.director.sweep_views_per_s,
-                       .delay_ladder = delayLadder(config.director)},
+                       .delay_ladder = delayLadder(config.director),
+                       .idle_home = microseconds(config.director.idle_home_s * 1e6)},
           .flicker_compensation = config.display.flicker_compensation};
 }
 

@@ -163,7 +163,7 @@ double distinctSetsPerSecond(const std::vector<const PictureRecord*>& shown) {
 struct Values {
   std::vector<double> edge_to_ready, last_packet_to_commit, target_point, homographies,
       demosaic_upload, warp, commit_to_flip, button_to_commit, lateness_us, edge_delay_us;
-  std::array<std::vector<double>, 4> wake_to_commit, edge_to_commit;
+  std::array<std::vector<double>, kModes.size()> wake_to_commit, edge_to_commit;
   std::vector<FlippedTrigger> flipped;
 };
 

@@ -71,7 +71,7 @@ struct Report {
   Distribution trigger_edge_delay_us;  ///< to the loop-back; without one there is none
   Distribution button_to_commit_ms;
   StageTimes stages_ms;
-  std::array<ModeTimes, 4> by_mode;  ///< in the order of Mode
+  std::array<ModeTimes, kModes.size()> by_mode;  ///< in the order of Mode
   GenlockReport genlock;
 
   bool last_packet_from_wire_log = false;  ///< else as the receiving thread saw it

@@ -159,7 +159,12 @@ struct JsonReader {
   static bool take(const json& from, GenlockReason& to) {
     return takeName(from, kGenlockReasonNames, to);
   }
-  static bool take(const json& from, Mode& to) { return takeName(from, kModeNames, to); }
+  static bool take(const json& from, Mode& to) {
+    if (!from.is_string()) return false;
+    const auto mode = modeNamed(from.get_ref<const std::string&>());
+    to = mode.value_or(to);
+    return mode.has_value();
+  }
   static bool take(const json& from, hal::FrameStatus& to) {
     return takeName(from, kStatusNames, to);
   }

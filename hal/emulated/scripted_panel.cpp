@@ -25,14 +25,14 @@ void sleepUntil(rt::Timestamp t) {
 }
 
 std::optional<Button> findButton(std::string_view name) {
-  const auto found = std::ranges::find(kButtonNames, name);
-  if (found == kButtonNames.end()) return std::nullopt;
-  return static_cast<Button>(found - kButtonNames.begin());
+  const auto* found = std::ranges::find(kButtons, name, &ButtonRow::name);
+  if (found == kButtons.end()) return std::nullopt;
+  return found->button;
 }
 
 std::string buttonList() {
   std::string list;
-  for (const auto name : kButtonNames) list += (list.empty() ? "" : ", ") + std::string(name);
+  for (const ButtonRow& row : kButtons) list += (list.empty() ? "" : ", ") + std::string(row.name);
   return list;
 }
 

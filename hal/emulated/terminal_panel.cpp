@@ -1,6 +1,7 @@
 #include "hal/emulated/terminal_panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <thread>
 
@@ -10,34 +11,32 @@
 namespace hal::emulated {
 namespace {
 
+struct Key {
+  char key;
+  Button button;
+};
+
+constexpr std::array<Key, 11> kKeyTable = {{{'l', Button::kLive},
+                                            {' ', Button::kFreeze},
+                                            {'f', Button::kFreeze},
+                                            {'-', Button::kDelayLess},
+                                            {'+', Button::kDelayMore},
+                                            {',', Button::kStepBack},
+                                            {'.', Button::kStepForward},
+                                            {'a', Button::kViewLeft},
+                                            {'d', Button::kViewRight},
+                                            {'s', Button::kSweep},
+                                            {'v', Button::kSpeed}}};
+
 std::optional<Button> buttonOf(char key) {
-  switch (key) {
-    case 'l':
-      return Button::kLive;
-    case ' ':
-    case 'f':
-      return Button::kFreeze;
-    case '-':
-      return Button::kDelayLess;
-    case '+':
-      return Button::kDelayMore;
-    case ',':
-      return Button::kStepBack;
-    case '.':
-      return Button::kStepForward;
-    case 'a':
-      return Button::kViewLeft;
-    case 'd':
-      return Button::kViewRight;
-    case 's':
-      return Button::kSweep;
-    default:
-      return std::nullopt;
-  }
+  const auto* found = std::ranges::find(kKeyTable, key, &Key::key);
+  if (found == kKeyTable.end()) return std::nullopt;
+  return found->button;
 }
 
 constexpr char kKeys[] =
-    "keys: l live   space freeze   - + delay   , . step in time   a d view   s sweep   ^C end\n";
+    "keys: l live   space freeze   - + delay   , . step in time   a d view   s sweep   v speed   "
+    "^C end\n";
 
 }  // namespace
 

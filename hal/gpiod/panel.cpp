@@ -14,8 +14,6 @@
 namespace hal::gpiod {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLampNames = {"live", "delayed", "frozen"};
-
 /// Where a button or lamp is: which request, which line of it.
 struct Place {
   std::size_t request = 0;
@@ -24,8 +22,8 @@ struct Place {
 
 template <std::size_t N>
 using Places = std::array<std::optional<Place>, N>;
-using ButtonPlaces = Places<kButtonNames.size()>;
-using LampPlaces = Places<kLampNames.size()>;
+using ButtonPlaces = Places<kButtons.size()>;
+using LampPlaces = Places<kLamps.size()>;
 
 class GpioPanel final : public ButtonPanel {
  public:
@@ -96,15 +94,15 @@ struct Claim {
 };
 
 /// Claims those of the lines @p prefix + name that exist, one request per chip.
-template <std::size_t N>
+template <class Row, std::size_t N>
 std::expected<Claim<N>, std::string> claimLines(const LineList& list, const std::string& prefix,
-                                                const std::array<std::string_view, N>& names,
+                                                const std::array<Row, N>& rows,
                                                 const ::gpiod::line_settings& settings,
                                                 const std::string& key) {
   Claim<N> claim;
   std::vector<std::vector<ListedLine>> by_chip;
   for (std::size_t i = 0; i < N; ++i) {
-    const std::string name = prefix + std::string(names[i]);
+    const std::string name = prefix + std::string(rows[i].name);
     auto line = findOptionalLine(list, name, key);
     if (!line) return std::unexpected(std::move(line.error()));
     if (!*line) {
@@ -146,8 +144,7 @@ std::expected<OpenedPanel, std::string> openButtonPanel(const PanelSettings& set
       .set_event_clock(::gpiod::line::clock::MONOTONIC)
       .set_debounce_period(settings.debounce)
       .set_active_low(settings.active_low);
-  auto buttons =
-      claimLines(list, settings.button_prefix, kButtonNames, contact, "panel.button_prefix");
+  auto buttons = claimLines(list, settings.button_prefix, kButtons, contact, "panel.button_prefix");
   if (!buttons) return std::unexpected(buttons.error());
   if (buttons->requests.empty()) {
     // The first one's message names what is near.
@@ -156,7 +153,7 @@ std::expected<OpenedPanel, std::string> openButtonPanel(const PanelSettings& set
   ::gpiod::line_settings output;
   output.set_direction(::gpiod::line::direction::OUTPUT)
       .set_output_value(::gpiod::line::value::INACTIVE);
-  auto lamps = claimLines(list, settings.lamp_prefix, kLampNames, output, "panel.lamp_prefix");
+  auto lamps = claimLines(list, settings.lamp_prefix, kLamps, output, "panel.lamp_prefix");
   if (!lamps) return std::unexpected(lamps.error());
 
   OpenedPanel opened;
@@ -169,9 +166,9 @@ std::expected<OpenedPanel, std::string> openButtonPanel(const PanelSettings& set
                            ": these lamps stay off");
   opened.panel = std::make_unique<GpioPanel>(std::move(buttons->requests), buttons->places,
                                              std::move(lamps->requests), lamps->places);
-  for (std::size_t i = 0; i < kButtonNames.size(); ++i) {
-    if (opened.panel->isPressed(static_cast<Button>(i)))
-      opened.notes.push_back("panel: the button " + std::string(kButtonNames[i]) +
+  for (const auto& [button, name] : kButtons) {
+    if (opened.panel->isPressed(button))
+      opened.notes.push_back("panel: the button " + std::string(name) +
                              " is held or stuck: it counts again once it was released");
   }
   return opened;

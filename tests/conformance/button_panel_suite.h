@@ -59,10 +59,10 @@ TEST_P(ButtonPanelConformance, WaitsNoLongerThanAsked) {
 }
 
 TEST_P(ButtonPanelConformance, KnowsEveryButtonAndLamp) {
-  for (std::size_t i = 0; i < hal::kButtonNames.size(); ++i) {
+  for (std::size_t i = 0; i < hal::kButtons.size(); ++i) {
     const auto button = static_cast<hal::Button>(i);
     if (button != hal::Button::kFreeze) {
-      EXPECT_FALSE(panel_->isPressed(button)) << hal::kButtonNames[i];
+      EXPECT_FALSE(panel_->isPressed(button)) << hal::kButtons[i].name;
     }
   }
   for (const auto lamp : {hal::Lamp::kLive, hal::Lamp::kDelayed, hal::Lamp::kFrozen}) {

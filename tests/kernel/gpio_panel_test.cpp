@@ -37,10 +37,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr std::size_t kButtons = hal::kButtonNames.size();
+constexpr std::size_t kButtons = hal::kButtons.size();
 
 std::string buttonLine(std::size_t button) {
-  return "button-" + std::string(hal::kButtonNames.at(button));
+  return "button-" + std::string(hal::kButtons.at(button).name);
 }
 
 std::vector<std::string> buttonLines() {
@@ -128,7 +128,7 @@ TEST(GpioPanel, KnowsEveryButtonByItsLine) {
     for (const bool closed : {true, false}) {
       sim.contact(i, closed);
       const auto event = panel->waitEvent(1s);
-      ASSERT_TRUE(event.has_value()) << hal::kButtonNames[i];
+      ASSERT_TRUE(event.has_value()) << hal::kButtons[i].name;
       EXPECT_EQ(event->button, static_cast<Button>(i));
       EXPECT_EQ(event->pressed, closed);
       EXPECT_EQ(panel->isPressed(static_cast<Button>(i)), closed);
@@ -441,9 +441,9 @@ TEST(GpioPanel, GivesOneEventForEachOf10000BouncingPressesAndTheCommandsOfTheMan
   for (const hal::ButtonEvent& event : listener.events) {
     const auto button = static_cast<std::size_t>(event.button);
     const Change& change = of_button.at(button).at(seen.at(button)++);
-    ASSERT_EQ(event.pressed, change.closed) << hal::kButtonNames.at(button);
-    ASSERT_GE(event.at, change.rest) << hal::kButtonNames.at(button);
-    ASSERT_LE(event.at, change.rest + 50ms) << hal::kButtonNames.at(button);
+    ASSERT_EQ(event.pressed, change.closed) << hal::kButtons.at(button).name;
+    ASSERT_GE(event.at, change.rest) << hal::kButtons.at(button).name;
+    ASSERT_LE(event.at, change.rest + 50ms) << hal::kButtons.at(button).name;
   }
   for (std::size_t i = 0; i < kButtons; ++i) EXPECT_FALSE(panel->isPressed(static_cast<Button>(i)));
   std::ranges::sort(given);

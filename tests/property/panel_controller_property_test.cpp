@@ -20,7 +20,7 @@ using test::Expected;
 using test::Gesture;
 
 constexpr int kGestures = 100;  // of one case; rapidcheck tries 100 cases
-constexpr std::size_t kButtons = hal::kButtonNames.size();
+constexpr std::size_t kButtons = hal::kButtons.size();
 
 /// Buttons pressed in any order and together. No two instants are equal: every gesture has its own
 /// nanosecond, so nothing depends on the order of simultaneous things.

@@ -52,12 +52,12 @@ TEST_F(PanelUnderAFakeClock, APressActsAtOnceAndItsReleaseDoesNothing) {
 TEST_F(PanelUnderAFakeClock, EveryKeyHasItsCommand) {
   using enum Command::Kind;
   const std::array expected = {kGoLive,      kFreezeToggle, kDelayLess, kDelayMore, kStepBack,
-                               kStepForward, kViewLeft,     kViewRight, kSweep};
+                               kStepForward, kViewLeft,     kViewRight, kSweep,     kSlower};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const auto button = static_cast<Button>(i);
     const auto command = press(button, 0);
-    ASSERT_TRUE(command.has_value()) << hal::kButtonNames[i];
-    EXPECT_EQ(command->command.kind, expected[i]) << hal::kButtonNames[i];
+    ASSERT_TRUE(command.has_value()) << hal::kButtons[i].name;
+    EXPECT_EQ(command->command.kind, expected[i]) << hal::kButtons[i].name;
     (void)release(button, 1);
   }
 }
@@ -113,6 +113,7 @@ TEST(Lamps, ShowTheModeByOneLamp) {
   EXPECT_EQ(appliance::lampOf(Mode::kDelayed), hal::Lamp::kDelayed);
   EXPECT_EQ(appliance::lampOf(Mode::kFrozen), hal::Lamp::kFrozen);
   EXPECT_EQ(appliance::lampOf(Mode::kSweep), hal::Lamp::kFrozen);
+  EXPECT_EQ(appliance::lampOf(Mode::kSlow), hal::Lamp::kDelayed);
 }
 
 TEST_F(PanelUnderAFakeClock, LateCallsDoNotMakeUpForMissedRepetitions) {

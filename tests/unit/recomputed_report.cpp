@@ -319,7 +319,7 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
       {"warp", spread(between(pictures, "upload_end", "warp_end"))},
       {"commit_to_flip", spread(flips)},
       {"trigger_edge_to_page_flip", spread(to_flip)}};
-  for (const char* mode : {"live", "delayed", "frozen", "sweep"})
+  for (const char* mode : {"live", "delayed", "frozen", "sweep", "slow"})
     out["by_mode"][mode] = {{"pictures", of_mode[mode].size()},
                             {"wake_to_commit_ms", spread(between(of_mode[mode], "wake", "commit"))},
                             {"trigger_edge_to_commit_ms", spread(edge_to_commit[mode])}};

@@ -185,6 +185,7 @@ RunFiles eventfulRun() {
                        : t <= 130 ? "delayed"
                        : t <= 150 ? "frozen"
                        : t <= 170 ? "sweep"
+                       : t <= 190 ? "slow"
                                   : "live";
     const std::int64_t shown = mode[0] == 'l' ? t : mode[0] == 'd' ? t - 40 : 120;
     for (int refresh = 0; refresh < 2; ++refresh) {

@@ -6,20 +6,18 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/button_panel.h"
+
 namespace test {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::array<const char*, 9> kButtons = {"live",       "freeze",     "delay-less",
-                                                 "delay-more", "step-back",  "step-forward",
-                                                 "view-left",  "view-right", "sweep"};
-constexpr std::array<const char*, 3> kLamps = {"live", "delayed", "frozen"};
-
 std::vector<std::string> lineNames(const char* trigger, const char* loop_back) {
   std::vector<std::string> names = {trigger, loop_back, ""};
-  for (const char* button : kButtons) names.push_back(std::string("button-") + button);
-  for (const char* lamp : kLamps) names.push_back(std::string("lamp-") + lamp);
+  for (const hal::ButtonRow& row : hal::kButtons)
+    names.push_back("button-" + std::string(row.name));
+  for (const hal::LampRow& row : hal::kLamps) names.push_back("lamp-" + std::string(row.name));
   return names;
 }
 
@@ -38,7 +36,8 @@ bool waitUntil(Done&& done) {
 
 WholeBox::WholeBox(std::string folder)
     : folder_(std::move(folder)), chip_("box", lineNames(kTriggerLine, kLoopBackLine)) {
-  for (const char* button : kButtons) chip_.pull(std::string("button-") + button, true);  // let go
+  for (const hal::ButtonRow& row : hal::kButtons)
+    chip_.pull("button-" + std::string(row.name), true);  // let go
 
   emulator_ = std::make_unique<ChildProcess>(
       std::vector<std::string>{KAGAMI_EMULATOR, "--cameras", std::to_string(kCameras), "--size",
