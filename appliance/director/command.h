@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "appliance/director/composition.h"
 #include "appliance/director/rate.h"
 #include "rt/clock.h"
 
@@ -30,12 +31,14 @@ struct Command {
     kStartSweep,  ///< be in a sweep
     kSlower,      ///< play from the shown moment: 1/2, 1/4, 1/8, then at full speed
     kSetRate,     ///< play from the shown moment at `rate`; kStill stops
+    kCompare,     ///< lay a second shot beside or over the first: `composition`; kSingle: none
     kReplay,      ///< what was shown in the last `delay`, at `rate`; then go on as before
   };
   Kind kind = Kind::kGoLive;
-  std::uint32_t camera = 0;  ///< kSetView, from 0
-  rt::Nanoseconds delay{};   ///< kSetDelay, kReplay
+  std::uint32_t camera = 0;  ///< kSetView, kCompare (of the second shot), from 0
+  rt::Nanoseconds delay{};   ///< kSetDelay, kReplay; kCompare: of the second shot behind the first
   Rate rate = Rate::kFull;   ///< kSetRate, kReplay
+  Composition composition;   ///< kCompare
 
   friend bool operator==(const Command&, const Command&) = default;
 };

@@ -41,7 +41,7 @@ Mode Director::modeNow() const RT_SAFE {
 }
 
 bool Director::isHome(const Available& at) const RT_SAFE {
-  return modeNow() == Mode::kLive && view_ == (at.cameras - 1) / 2;
+  return !comparison_ && modeNow() == Mode::kLive && view_ == (at.cameras - 1) / 2;
 }
 
 /// A moment that could not be kept is left for the one that was: see Shot::hold.
@@ -133,7 +133,23 @@ Shot Director::decide(const Available& at, const Presentation& picture) RT_SAFE 
     shot.trigger = frame->trigger;
   }
   shot.substitute = substituteOf(shot, at);
+  if (comparison_) decideSecond(at, shot);
   return shot;
+}
+
+/// Where the second frame is not there the first one is shown alone: no other moment stands in for
+/// it. While live its camera may be a few microseconds later, so a trigger earlier will do.
+void Director::decideSecond(const Available& at, Shot& shot) const RT_SAFE {
+  const std::uint64_t back = at.inTriggers(comparison_->delay);
+  if (shot.trigger <= back || comparison_->camera >= at.cameras) return;
+  const std::uint64_t wanted = shot.trigger - back;
+  const bool earlier_will_do = !stopped_ && wanted > 1;
+  for (const std::uint64_t trigger : {wanted, earlier_will_do ? wanted - 1 : wanted}) {
+    if (!at.stored.holds(comparison_->camera, trigger)) continue;
+    shot.composition = comparison_->composition;
+    shot.second = {.camera = comparison_->camera, .trigger = trigger};
+    return;
+  }
 }
 
 Substitute Director::substituteOf(const Shot& shot, const Available& at) const RT_SAFE {

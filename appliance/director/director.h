@@ -64,6 +64,12 @@ class Director {
   [[nodiscard]] bool moving() const RT_SAFE;
 
  private:
+  /// A second shot: another view, or the view some time earlier, in the same picture.
+  struct Comparison {
+    Composition composition;
+    std::uint32_t camera = 0;
+    rt::Nanoseconds delay{};  // behind the first shot
+  };
   struct Stop {
     std::uint64_t trigger = 0;
     bool at_memorys_end = false;  // a step beyond the end was asked for
@@ -79,6 +85,7 @@ class Director {
   CommandOutcome play(Rate rate, const Available& at) RT_SAFE;
   CommandOutcome startSweep(const Available& at) RT_SAFE;
   CommandOutcome startReplay(const Command& command, const Available& at) RT_SAFE;
+  CommandOutcome compare(const Command& command, const Available& at) RT_SAFE;
   CommandOutcome moveView(std::int32_t direction, const Available& at) RT_SAFE;
   void jump() RT_SAFE;
 
@@ -93,6 +100,7 @@ class Director {
   void keepToMemory(const Available& at) RT_SAFE;
   void followDelay(const Available& at, const Presentation& picture, Shot& shot) RT_SAFE;
   Shot decide(const Available& at, const Presentation& picture) RT_SAFE;
+  void decideSecond(const Available& at, Shot& shot) const RT_SAFE;
   [[nodiscard]] Substitute substituteOf(const Shot& shot, const Available& at) const RT_SAFE;
 
   DirectorParameters parameters_;
@@ -106,7 +114,8 @@ class Director {
   std::optional<Stop> stopped_;         // none: time runs
   std::optional<Programme> programme_;  // drives rate, stop and view
   std::optional<std::uint32_t> return_to_;  // the view that a sweep began with
-  bool following_ = false;                  // the playhead is where the delay wants it
+  std::optional<Comparison> comparison_;
+  bool following_ = false;  // the playhead is where the delay wants it
 
   Shot last_;
   std::optional<rt::Timestamp> last_command_;  // or the first tick

@@ -38,6 +38,7 @@ CommandOutcome Director::apply(const Command& command, const Available& at) RT_S
       return changeDelay({});
     case kHome:
       view_ = (at.cameras - 1) / 2;
+      comparison_.reset();
       return changeDelay({});
     case kFreezeToggle:
       if (walking) return CommandOutcome::kApplied;
@@ -74,6 +75,8 @@ CommandOutcome Director::apply(const Command& command, const Available& at) RT_S
       return play(command.rate, at);
     case kReplay:
       return startReplay(command, at);
+    case kCompare:
+      return compare(command, at);
   }
   return CommandOutcome::kApplied;
 }
@@ -83,7 +86,7 @@ CommandOutcome Director::apply(const Command& command, const Available& at) RT_S
 void Director::interruptProgramme(Command::Kind by) RT_SAFE {
   if (!programme_) return;
   if (by == Command::Kind::kStartSweep && return_to_) return;
-  if (!stopped_ && changesTheView(by)) return;
+  if (by == Command::Kind::kCompare || (!stopped_ && changesTheView(by))) return;
   programme_.reset();
   if (return_to_ && leavesTheMoment(by)) view_ = *return_to_;
   return_to_.reset();
@@ -189,6 +192,17 @@ CommandOutcome Director::startReplay(const Command& command, const Available& at
   stopped_.reset();
   playhead_.seek(begin);
   jump();
+  return CommandOutcome::kApplied;
+}
+
+CommandOutcome Director::compare(const Command& command, const Available& at) RT_SAFE {
+  comparison_.reset();
+  if (command.composition.layout == Layout::kSingle) return CommandOutcome::kApplied;
+  if (command.camera >= at.cameras) return CommandOutcome::kNoSuchView;
+  comparison_ =
+      Comparison{.composition = command.composition,
+                 .camera = command.camera,
+                 .delay = std::clamp(command.delay, rt::Nanoseconds::zero(), kLongestDelay)};
   return CommandOutcome::kApplied;
 }
 

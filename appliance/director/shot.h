@@ -8,6 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "appliance/director/composition.h"
 #include "appliance/director/rate.h"
 #include "rt/clock.h"
 
@@ -54,6 +55,13 @@ enum class Substitute : std::uint8_t {
   kCannotSee,  ///< the target lies outside its picture
 };
 
+struct ShownFrame {
+  std::uint32_t camera = 0;
+  std::uint64_t trigger = 0;  ///< 0: none
+
+  friend bool operator==(const ShownFrame&, const ShownFrame&) = default;
+};
+
 /// The director's decision for one output picture: which stored moment of which view.
 struct Shot {
   Mode mode = Mode::kLive;
@@ -65,6 +73,8 @@ struct Shot {
   std::uint64_t trigger = 0;  ///< 0: nothing is stored that could be shown
   std::uint64_t hold = 0;     ///< the moment whose frames must stay, of all cameras; 0: none
   rt::Nanoseconds delay{};    ///< behind the newest stored moment
+  Composition composition;    ///< kSingle whenever there is no second frame
+  ShownFrame second;          ///< drawn after the first, where the composition says
 
   friend bool operator==(const Shot&, const Shot&) = default;
 };

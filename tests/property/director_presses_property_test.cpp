@@ -92,7 +92,8 @@ Command anyPress(std::mt19937& random) {
   return {.kind = static_cast<Command::Kind>(random() % kKinds),
           .camera = static_cast<std::uint32_t>(random() % (kCameras + 1)),
           .delay = std::chrono::milliseconds(random() % 6000),
-          .rate = static_cast<Rate>(random() % 5)};
+          .rate = static_cast<Rate>(random() % 5),
+          .composition = {.layout = static_cast<appliance::Layout>(random() % 4)}};
 }
 
 /// What a moment may be, given the picture before and what was pressed since.
@@ -144,6 +145,10 @@ TEST(TwoHoursOfPresses, LeadToNoDeadEndAndToNoMomentThatWasNotAskedFor) {
     ASSERT_LT(shot.camera_shown, kCameras);
     ASSERT_EQ(director.outcomes().size(), pressed.size());
     expectAskedFor(before, shot, pressed, box);
+    if (shot.second.trigger != 0) {
+      ASSERT_TRUE(box.holds(shot.second.camera, shot.second.trigger));
+      ASSERT_LE(shot.second.trigger, shot.trigger);
+    }
     if (shot.mode == Mode::kFrozen && before.mode == Mode::kFrozen && pressed.empty()) {
       ASSERT_EQ(shot.trigger, before.trigger);
       ASSERT_EQ(shot.camera_shown, before.camera_shown);

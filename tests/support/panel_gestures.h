@@ -35,7 +35,7 @@ inline std::vector<Expected> manualSays(const std::vector<Gesture>& gestures) {
   using namespace std::chrono_literals;
   using enum appliance::Command::Kind;
   constexpr std::array kOnPress = {kGoLive,      kFreezeToggle, kDelayLess, kDelayMore, kStepBack,
-                                   kStepForward, kViewLeft,     kViewRight, kSweep};
+                                   kStepForward, kViewLeft,     kViewRight, kSweep,     kSlower};
   std::vector<Expected> expected;
   for (const Gesture& gesture : gestures) {
     if (!gesture.press_heard) continue;
@@ -51,6 +51,7 @@ inline std::vector<Expected> manualSays(const std::vector<Gesture>& gestures) {
         break;
       case kFreezeToggle:
       case kSweep:
+      case kSlower:
         break;
       default:
         for (auto due = gesture.press + 400ms; due < end; due += 125ms)

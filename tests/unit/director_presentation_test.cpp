@@ -1,8 +1,8 @@
-#include "appliance/director/presentation.h"
-
 #include <chrono>
 
 #include <gtest/gtest.h>
+
+#include "appliance/director/presentation.h"
 
 namespace {
 

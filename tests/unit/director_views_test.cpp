@@ -167,5 +167,41 @@ TEST_F(DirectorOnAnArcOfFive, HomeIsLiveAndTheMiddleViewFromEveryMode) {
   }
 }
 
+TEST_F(DirectorOnAnArcOfFive, AComparisonAddsAnotherViewOfTheSameMoment) {
+  const Command compare{
+      .kind = kCompare, .camera = 4, .composition = {.layout = appliance::Layout::kSideBySide}};
+  (void)tick({compare});
+  EXPECT_THAT(director.outcomes(), testing::ElementsAre(CommandOutcome::kApplied));
+  Shot shot = tick();
+  EXPECT_EQ(shot.composition.layout, appliance::Layout::kSideBySide);
+  EXPECT_EQ(shot.second, (appliance::ShownFrame{4, 1000}));
+  (void)press(kFreeze);
+  history.newest = 1010;
+  shot = press(kStepBack);
+  EXPECT_EQ(shot.trigger, 999u);
+  EXPECT_EQ(shot.second, (appliance::ShownFrame{4, 999}));
+  history.holes = {{4, 998}};
+  shot = press(kStepBack);
+  EXPECT_EQ(shot.composition.layout, appliance::Layout::kSingle);
+  EXPECT_EQ(shot.second.trigger, 0u) << "no other moment stands in for it";
+}
+
+TEST_F(DirectorOnAnArcOfFive, AComparisonMayBeTheSameViewSomeTimeEarlier) {
+  const Command ghost{.kind = kCompare,
+                      .camera = 2,
+                      .delay = seconds(1),
+                      .composition = {.layout = appliance::Layout::kGhost, .share = 0.3F}};
+  const Shot shot = tick({ghost});
+  EXPECT_EQ(shot.trigger, 1000u);
+  EXPECT_EQ(shot.second, (appliance::ShownFrame{2, 960}));
+  EXPECT_EQ(press(kHome).second.trigger, 0u);
+  (void)tick({ghost});
+  EXPECT_EQ(tick({{.kind = kCompare}}).second.trigger, 0u);
+  Command nowhere = ghost;
+  nowhere.camera = 5;
+  (void)tick({nowhere});
+  EXPECT_THAT(director.outcomes(), testing::ElementsAre(CommandOutcome::kNoSuchView));
+}
+
 }  // namespace
 }  // namespace director_test
