@@ -4,9 +4,11 @@
 
 #include "hal/aravis/aravis_camera.h"
 #include "hal/aravis/camera_probe.h"
+#ifdef KAGAMI_EMULATED
 #include "hal/emulated/scripted_panel.h"
 #include "hal/emulated/terminal_panel.h"
 #include "hal/emulated/trigger_line.h"
+#endif
 #include "hal/gpiod/edge_input.h"
 #include "hal/gpiod/panel.h"
 #include "hal/gpiod/trigger_line.h"
@@ -15,6 +17,15 @@
 
 namespace hal {
 namespace {
+
+// A product build has none of the backends for machines without hardware.
+#ifdef KAGAMI_EMULATED
+constexpr const char* kTriggerBackends = R"("emulated", "gpiod")";
+constexpr const char* kPanelBackends = R"("none", "scripted", "terminal", "gpiod")";
+#else
+constexpr const char* kTriggerBackends = R"("gpiod")";
+constexpr const char* kPanelBackends = R"("none", "gpiod")";
+#endif
 
 std::string unknown(const char* device, std::string_view backend, const char* known) {
   return std::string(device) + ".backend = \"" + std::string(backend) + "\" is not one of " + known;
@@ -42,11 +53,13 @@ CameraProbe probeCamera(std::string_view backend, const std::string& address,
 }
 
 Opened<TriggerLine> openTriggerLine(std::string_view backend, const TriggerLineSettings& settings) {
+#ifdef KAGAMI_EMULATED
   if (backend == "emulated")
     return as<TriggerLine>(emulated::EmulatedTriggerLine::open(settings.wire_port));
+#endif
   if (backend == "gpiod")
     return gpiod::openTriggerLine({.lines = settings.lines, .active_low = settings.active_low});
-  return std::unexpected(unknown("trigger", backend, R"("emulated", "gpiod")"));
+  return std::unexpected(unknown("trigger", backend, kTriggerBackends));
 }
 
 Opened<EdgeInput> openEdgeInput(const std::string& line, bool active_low) {
@@ -55,19 +68,21 @@ Opened<EdgeInput> openEdgeInput(const std::string& line, bool active_low) {
 
 Opened<ButtonPanel> openButtonPanel(std::string_view backend, const PanelSettings& settings,
                                     std::vector<std::string>& notes) {
+#ifdef KAGAMI_EMULATED
   if (backend == "terminal") return emulated::TerminalPanel::open();
   if (backend == "scripted") {
     auto panel = emulated::ScriptedPanel::open(settings.script, rt::now());
     if (!panel) return std::unexpected(std::move(panel.error()));
     return std::make_unique<emulated::ScriptedPanel>(std::move(*panel));
   }
+#endif
   if (backend == "gpiod") {
     auto opened = gpiod::openButtonPanel(settings);
     if (!opened) return std::unexpected(std::move(opened.error()));
     for (std::string& note : opened->notes) notes.push_back(std::move(note));
     return std::move(opened->panel);
   }
-  return std::unexpected(unknown("panel", backend, R"("none", "scripted", "terminal", "gpiod")"));
+  return std::unexpected(unknown("panel", backend, kPanelBackends));
 }
 
 Opened<DepthSensor> openDepthSensor(std::string_view backend, const DepthSensorSettings& settings) {

@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "tests/support/commanded_box.h"
 #include "tests/support/depth_feed.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -53,8 +53,8 @@ TEST_F(DepthDaemon, NamesTheBackendsThereAre) {
 
 TEST(DepthTools, MeasureALatencyByALampInThePicture) {
   const test::TemporaryFolder folder;
-  const std::string ring = "/dev/shm/kagami-depth-lamp-test-" + std::to_string(::getpid());
-  ::setenv("KAGAMI_DEPTH_RING", ring.c_str(), 1);
+  const test::TemporaryFolder shared_memory("/dev/shm");  // a killed feeder leaves its ring
+  ::setenv("KAGAMI_DEPTH_RING", (shared_memory / "ring").c_str(), 1);
   const std::string lamp = folder / "lamp.txt";
   // Small pictures: under a sanitizer too they are drawn in time.
   test::ChildProcess feeder(

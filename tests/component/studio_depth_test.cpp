@@ -15,7 +15,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "hal/emulated/openni/sensor_model.h"
 #include "hal/emulated/studio/depth_sensor.h"
@@ -51,8 +50,8 @@ class StudioDepth : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     scratch_ = std::make_unique<test::TemporaryFolder>();
-    const std::string ring = "/dev/shm/kagami-studio-depth-test-" + std::to_string(::getpid());
-    ::setenv("KAGAMI_DEPTH_RING", ring.c_str(), 1);
+    shared_memory_ = std::make_unique<test::TemporaryFolder>("/dev/shm");
+    ::setenv("KAGAMI_DEPTH_RING", (*shared_memory_ / "ring").c_str(), 1);
     test::ChildProcess emulator({KAGAMI_EMULATOR,
                                  "--scene",
                                  "studio",
@@ -112,9 +111,11 @@ class StudioDepth : public testing::Test {
     pairs_.clear();
     shown_.clear();
     scratch_.reset();
+    shared_memory_.reset();
   }
 
   static inline std::unique_ptr<test::TemporaryFolder> scratch_;
+  static inline std::unique_ptr<test::TemporaryFolder> shared_memory_;  // of a killed emulator, too
   static inline std::vector<Pair> pairs_;
   static inline std::map<std::uint64_t, Shown> shown_;
   static inline hal::DepthLens lens_;

@@ -25,7 +25,7 @@ skip() { printf 'SKIPPED: %s\n' "$*"; exit 77; }
 folder_of() { (cd -- "$1" 2>/dev/null && pwd) || die "no folder '$1'"; }
 
 here=$(folder_of "$(dirname -- "$0")")
-init= find= virtual= writable= memory=2G limit= log= arguments=
+init='' find='' virtual='' writable='' memory=2G limit='' log='' arguments=''
 while [ $# -gt 0 ]; do
   case $1 in
     --find) find=yes ;;
@@ -71,6 +71,7 @@ $(set_folders)
 FOLDERS
   [ -z "$kernel" ] || break
 done
+# shellcheck disable=SC2046  # the folders in one line
 [ -n "$kernel" ] ||
   skip "no test kernel ${virtual:+6.12 }in" $(set_folders) "- './dev kernel' builds it"
 if [ -n "$find" ]; then

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -41,6 +42,42 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
+/// What git keeps of this tree: a contributor's own files beside it are none of ours. Nothing where
+/// there is no git or the tree is none of its work trees, an unpacked archive for instance.
+std::vector<std::string> trackedFiles(const fs::path& root) {
+  const std::string command =
+      "git -c safe.directory=* -C '" + root.string() + "' ls-files --cached -z 2>/dev/null";
+  std::vector<std::string> paths;
+  std::FILE* pipe = fs::exists(root / ".git") ? ::popen(command.c_str(), "re") : nullptr;
+  if (pipe == nullptr) return paths;
+  std::string path;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) {
+    if (c != 0) {
+      path.push_back(static_cast<char>(c));
+    } else {
+      if (fs::is_regular_file(root / path) && isText(path)) paths.push_back(path);
+      path.clear();
+    }
+  }
+  if (::pclose(pipe) != 0) paths.clear();
+  std::ranges::sort(paths);
+  return paths;
+}
+
+std::vector<std::string> allFiles(const fs::path& root) {
+  std::vector<std::string> paths;
+  for (fs::recursive_directory_iterator it(root), end; it != end; ++it) {
+    const auto relative = fs::relative(it->path(), root);
+    if (isOutput(relative)) {
+      it.disable_recursion_pending();
+    } else if (it->is_regular_file() && isText(relative)) {
+      paths.push_back(relative.generic_string());
+    }
+  }
+  std::ranges::sort(paths);
+  return paths;
+}
+
 }  // namespace
 
 fs::path root() {
@@ -55,16 +92,8 @@ SourceFile read(const fs::path& root, const std::string& path) {
 }
 
 std::vector<SourceFile> readTree(const fs::path& root) {
-  std::vector<std::string> paths;
-  for (fs::recursive_directory_iterator it(root), end; it != end; ++it) {
-    const auto relative = fs::relative(it->path(), root);
-    if (isOutput(relative)) {
-      it.disable_recursion_pending();
-    } else if (it->is_regular_file() && isText(relative)) {
-      paths.push_back(relative.generic_string());
-    }
-  }
-  std::ranges::sort(paths);
+  std::vector<std::string> paths = trackedFiles(root);
+  if (paths.empty()) paths = allFiles(root);
   std::vector<SourceFile> files;
   files.reserve(paths.size());
   for (const auto& path : paths) files.push_back(read(root, path));

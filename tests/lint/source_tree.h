@@ -16,8 +16,8 @@ struct SourceFile {
 
 [[nodiscard]] SourceFile read(const std::filesystem::path& root, const std::string& path);
 
-/// Every text file that belongs to the project, sorted by path: hidden folders, build outputs
-/// and pictures are left out.
+/// Every text file that belongs to the project, sorted by path: those that git tracks, or without
+/// git all but build outputs. Pictures are left out.
 [[nodiscard]] std::vector<SourceFile> readTree(const std::filesystem::path& root);
 
 /// The .h and .cpp files among @p files.
