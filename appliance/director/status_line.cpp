@@ -1,106 +1,77 @@
 #include "appliance/director/status_line.h"
 
+#include <algorithm>
+#include <chrono>
 #include <string>
-#include <string_view>
+
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 namespace {
 
-/// Appends to a line.
-class LineWriter {
- public:
-  explicit LineWriter(std::string& line) : line_(line) {}
-
-  LineWriter& operator<<(std::string_view text) {
-    line_ += text;
-    return *this;
-  }
-  LineWriter& operator<<(std::uint64_t number) { return *this << std::to_string(number); }
-
-  /// Seconds with @p decimals places, rounded.
-  void seconds(rt::Nanoseconds time, int decimals) {
-    std::uint64_t unit_ns = 1'000'000'000;
-    for (int i = 0; i < decimals; ++i) unit_ns /= 10;
-    const auto time_ns = static_cast<std::uint64_t>(time.count() < 0 ? 0 : time.count());
-    const std::uint64_t units = (time_ns + unit_ns / 2) / unit_ns;
-    const std::uint64_t per_second = 1'000'000'000 / unit_ns;
-    *this << units / per_second << ".";
-    for (std::uint64_t place = per_second / 10; place != 0; place /= 10) {
-      *this << units / place % 10;
-    }
-    *this << " s";
-  }
-
- private:
-  std::string& line_;
-};
-
-/// How long ago the shown moment was, nothing for the newest one.
-void writeAge(LineWriter& out, rt::Nanoseconds delay) {
-  constexpr rt::Nanoseconds kShownAsZero = std::chrono::milliseconds(5);
-  if (delay < kShownAsZero) return;
-  out << " -";
-  out.seconds(delay, 2);
+double secondsOf(rt::Nanoseconds time) {
+  return std::chrono::duration<double>(std::max(time, rt::Nanoseconds{0})).count();
 }
 
-void writeMode(LineWriter& out, const Shot& shot) {
+/// The mode, with the age of the shown moment; none for the newest one.
+Phrase modeOf(const Shot& shot) {
+  constexpr rt::Nanoseconds kShownAsZero = std::chrono::milliseconds(5);
+  const bool newest = shot.delay < kShownAsZero;
+  const double age = secondsOf(shot.delay);
   switch (shot.mode) {
     case Mode::kLive:
-      out << "LIVE";
       break;
     case Mode::kDelayed:
-      out << "DELAY ";
-      out.seconds(shot.delay, 1);
-      break;
+      return phrase<Word::kShownDelayed>(age);
     case Mode::kFrozen:
-      out << "FROZEN";
-      writeAge(out, shot.delay);
-      break;
+      return newest ? phrase<Word::kShownFrozen>() : phrase<Word::kShownFrozenAgo>(age);
     case Mode::kSweep:
-      out << "SWEEP";
-      writeAge(out, shot.delay);
-      break;
+      return newest ? phrase<Word::kShownSweep>() : phrase<Word::kShownSweepAgo>(age);
     case Mode::kSlow:
-      out << "SLOW " << nameOf(shot.rate);
-      writeAge(out, shot.delay);
-      break;
+      return newest ? phrase<Word::kShownSlow>(nameOf(shot.rate))
+                    : phrase<Word::kShownSlowAgo>(nameOf(shot.rate), age);
   }
+  return phrase<Word::kShownLive>();
 }
 
-std::string_view reasonOf(Substitute substitute) {
-  switch (substitute) {
+Phrase reasonOf(const Shot& shot) {
+  const std::uint64_t camera = std::uint64_t{shot.camera_wanted} + 1;
+  switch (shot.substitute) {
     case Substitute::kNone:
       break;
     case Substitute::kLost:
-      return " lost";
+      return phrase<Word::kBadgeLost>(camera);
     case Substitute::kNoFrame:
-      return " has no picture of this moment";
+      return phrase<Word::kBadgeNoFrame>(camera);
     case Substitute::kCannotSee:
-      return " cannot see the target";
+      return phrase<Word::kBadgeCannotSee>(camera);
   }
-  return "";
+  return {};
 }
 
-void writeBadge(LineWriter& out, const Shot& shot) {
-  if (shot.substitute == Substitute::kNone) return;
-  out << "   camera " << std::uint64_t{shot.camera_wanted} + 1 << reasonOf(shot.substitute);
+/// Why the picture is not what was asked for, and what is shown in its place.
+std::string badgeOf(const Shot& shot) {
+  const std::string reason = textOf(reasonOf(shot));
   if (shot.camera_shown != shot.camera_wanted) {
-    out << ": showing " << std::uint64_t{shot.camera_shown} + 1;
-  } else if (shot.trigger != 0) {
-    out << ": showing its last picture";
+    const std::uint64_t camera = std::uint64_t{shot.camera_shown} + 1;
+    return reason + ": " + textOf(phrase<Word::kBadgeShowing>(camera));
   }
+  if (shot.trigger != 0) return reason + ": " + textOf(phrase<Word::kBadgeShowingLast>());
+  return reason;
 }
 
 }  // namespace
 
 StatusText statusText(const Shot& shot, std::uint32_t cameras) {
-  StatusText line;
-  LineWriter out(line.text);
-  writeMode(out, shot);
-  out << "   view " << std::uint64_t{shot.camera_wanted} + 1 << "/" << std::uint64_t{cameras};
-  if (shot.at_history_end) out << "   end of memory";
-  if (shot.trigger == 0) out << "   no picture yet";
-  writeBadge(out, shot);
+  StatusText line{.text = textOf(modeOf(shot))};
+  const auto state = [&line](const std::string& statement) {
+    line.text += kStatementGap + statement;
+  };
+  const std::uint64_t view = std::uint64_t{shot.camera_wanted} + 1;
+  state(textOf(phrase<Word::kShownView>(view, cameras)));
+  if (shot.at_history_end) state(textOf(phrase<Word::kShownMemoryEnd>()));
+  if (shot.trigger == 0) state(textOf(phrase<Word::kShownNothingYet>()));
+  if (shot.substitute != Substitute::kNone) state(badgeOf(shot));
   line.warning = shot.substitute != Substitute::kNone || shot.trigger == 0;
   return line;
 }

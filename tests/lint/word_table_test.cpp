@@ -27,7 +27,8 @@ const std::vector<std::string>& portedFiles() {
       "appliance/capture/camera_array.cpp",   "appliance/capture/camera_state.cpp",
       "appliance/capture/cameras_part.cpp",   "appliance/capture/genlock_text.cpp",
       "appliance/capture/trigger_part.cpp",   "appliance/depth/depth_part.cpp",
-      "appliance/depth/depth_text.cpp",       "appliance/journal/status_conditions.cpp",
+      "appliance/depth/depth_text.cpp",       "appliance/director/status_line.cpp",
+      "appliance/journal/status_conditions.cpp",
       "appliance/journal/status_journal.cpp", "appliance/panel/panel_part.cpp",
   };
   return kFiles;

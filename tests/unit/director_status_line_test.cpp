@@ -56,6 +56,21 @@ TEST(StatusLine, SaysWhatIsShownInPlaceOfTheWantedView) {
   EXPECT_EQ(line(shot), "LIVE   view 7/20   camera 7 lost: showing its last picture");
 }
 
+TEST(StatusLine, NamesTheRateOfSlowMotionAndHowLongAgoItIs) {
+  Shot shot{.mode = Mode::kSlow, .trigger = 9, .delay = milliseconds(1250)};
+  shot.rate = appliance::Rate::kQuarter;
+  const std::string rate(nameOf(shot.rate));
+  EXPECT_EQ(line(shot), "SLOW " + rate + " -1.25 s   view 1/20");
+  shot.delay = {};
+  EXPECT_EQ(line(shot), "SLOW " + rate + "   view 1/20");
+}
+
+TEST(StatusLine, SaysThatAViewCannotSeeTheTarget) {
+  const Shot shot{
+      .substitute = Substitute::kCannotSee, .camera_wanted = 6, .camera_shown = 7, .trigger = 9};
+  EXPECT_EQ(line(shot), "LIVE   view 7/20   camera 7 cannot see the target: showing 8");
+}
+
 TEST(StatusLine, IsNoBadgeWhileAllIsAsAskedFor) {
   const Shot shot{.mode = Mode::kFrozen, .trigger = 9};
   EXPECT_FALSE(statusText(shot, 20).warning);
