@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -94,6 +95,10 @@ void sweep(const fs::path& temporary) {
 }
 
 }  // namespace
+
+DriverStage::DriverStage(fs::path folder) {
+  if (folder.filename().string().starts_with(kPrefix)) folder_ = std::move(folder);
+}
 
 std::expected<DriverStage, std::string> DriverStage::make(const fs::path& drivers) {
   const std::string who = "depth sensor drivers " + drivers.string() + ": ";

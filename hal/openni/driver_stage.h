@@ -22,8 +22,9 @@ class DriverStage {
   [[nodiscard]] static std::expected<DriverStage, std::string> make(
       const std::filesystem::path& drivers);
 
-  /// One that make() made, in this process or in that which started this one.
-  explicit DriverStage(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// One that make() made, in this process or in the one that became this one. A folder that does
+  /// not bear such a name is left alone: it comes from the environment.
+  explicit DriverStage(std::filesystem::path folder);
 
   DriverStage(DriverStage&& other) noexcept : folder_(std::move(other.folder_)) {
     other.folder_.clear();
@@ -32,10 +33,8 @@ class DriverStage {
   ~DriverStage() { remove(); }
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Once the drivers are loaded nobody needs it any more.
+  /// Once the drivers are loaded it is not needed any more.
   void remove();
-  /// Leaves it to the program that this process becomes.
-  void leave() { folder_.clear(); }
 
  private:
   std::filesystem::path folder_;
