@@ -149,7 +149,7 @@ std::expected<void, std::string> run(const Site& site, EventLoop& loop) {
   for (const std::string& line : lightLines(lightWish(config, site.rig))) logInfo(line);
   const auto service =
       BoxService::start(loop, {.bus = config.control.bus, .name = config.control.name}, **running,
-                        **running, (*running)->busObjects());
+                        **running, (*running)->jobs(), (*running)->busObjects());
   if (!service) return std::unexpected(service.error());
   logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
           std::string(display.renderer()) + ", frames by " + (*running)->status().source_path);

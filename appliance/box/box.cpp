@@ -5,6 +5,7 @@
 
 #include "appliance/box/memory.h"
 #include "appliance/box/run_facts.h"
+#include "appliance/metrics/metrics_text.h"
 
 namespace appliance {
 
@@ -51,6 +52,7 @@ std::expected<void, std::string> Box::makeShared(const BoxParts& parts) {
     trace_ = std::move(*trace);
   }
   shared_ = std::make_unique<const Shared>(Shared{.metrics = metrics_,
+                                                  .jobs = jobs_,
                                                   .config = config,
                                                   .rig = site_.rig,
                                                   .rigs = rigs_,
@@ -97,8 +99,18 @@ void Box::endWithout(const std::vector<std::string>& hung) {
   if (!hung.empty() && on_hang_) on_hang_(hung);
 }
 
-bool Box::command(const Command& command) {
-  return control_commands_.give({.command = command, .at = rt::now()});
+std::optional<CommandId> Box::command(const Command& command) {
+  const CommandId id = ++last_command_;
+  if (!control_commands_.give({.command = command, .at = rt::now(), .id = id})) return std::nullopt;
+  return id;
+}
+
+std::optional<CommandAnswer> Box::nextAnswer() {
+  return commands_.answers().tryTake();
+}
+
+std::string Box::metrics() const {
+  return toJson(metrics_.snapshot());
 }
 
 /// What a person says of the target holds from the moment on screen on.

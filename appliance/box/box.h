@@ -4,6 +4,7 @@
 #include <expected>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "appliance/box/parts.h"
 #include "appliance/box/shared.h"
 #include "appliance/control/bus_object.h"
+#include "appliance/jobs/job_registry.h"
 #include "appliance/site/site.h"
 #include "appliance/status/status.h"
 
@@ -47,13 +49,17 @@ class Box final : public ControlSink, public StatusSource {
   /// Errors: the trace could not be written whole, or a part did not stop.
   std::expected<void, std::string> stop();
 
-  [[nodiscard]] bool command(const Command& command) override;
+  [[nodiscard]] std::optional<CommandId> command(const Command& command) override;
+  [[nodiscard]] std::optional<CommandAnswer> nextAnswer() override;
+  [[nodiscard]] int answersFd() const override { return commands_.answers().fd(); }
   [[nodiscard]] bool setTarget(const std::array<double, 3>& target_m) override;
   void releaseTarget() override;
   void setScreenReleased(bool released) override;
   [[nodiscard]] Status status() const override;
   /// The parts' own objects on the bus; they hold until the box is destroyed.
   [[nodiscard]] std::vector<BusObject> busObjects() const;
+  [[nodiscard]] std::string metrics() const override;
+  [[nodiscard]] JobRegistry& jobs() { return jobs_; }
 
  private:
   Box(const Site& site, const BoxParts& parts);
@@ -74,12 +80,14 @@ class Box final : public ControlSink, public StatusSource {
   OverlayBoard overlay_;
   CaptureBoard board_;
   CommandInbox commands_;
+  CommandId last_command_ = 0;
   CommandSender& control_commands_;
   ShownBoard shown_;
   std::unique_ptr<FrameHistory> history_;
   std::unique_ptr<TraceWriter> trace_;  // none: not traced
   std::unique_ptr<const Shared> shared_;
   PartList parts_;
+  JobRegistry jobs_;  // ends first: a work uses the parts
   bool stopped_ = false;
 };
 

@@ -14,6 +14,7 @@
 #include "appliance/geometry/rig.h"
 #include "appliance/geometry/rig_shelf.h"
 #include "appliance/geometry/target_track.h"
+#include "appliance/jobs/job_registry.h"
 #include "appliance/metrics/metrics_registry.h"
 #include "appliance/overlay/overlay_board.h"
 #include "appliance/render/picture_observer.h"
@@ -26,6 +27,7 @@ namespace appliance {
 /// nowhere else: each board says in its own contract who writes and who reads.
 struct Shared {
   MetricsRegistry& metrics;
+  JobRegistry& jobs;
   const Config& config;
   const Rig& rig;  ///< the first one: count, names and sizes of the cameras hold for the run
   RigShelf& rigs;

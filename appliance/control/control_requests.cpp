@@ -15,16 +15,10 @@ constexpr double kFarthestTargetMetres = 1000;  // beyond any hall; a slip of th
 
 }  // namespace
 
-Requested requestMode(std::string_view mode, const Status& now) {
+Requested requestMode(std::string_view mode) {
   if (mode == "live") return Command{Kind::kGoLive};
-  if (mode == "frozen") {
-    if (now.mode == Mode::kFrozen) return std::nullopt;
-    return Command{Kind::kFreezeToggle};
-  }
-  if (mode == "sweep") {
-    if (now.mode == Mode::kSweep) return std::nullopt;
-    return Command{Kind::kSweep};
-  }
+  if (mode == "frozen") return Command{Kind::kFreeze};
+  if (mode == "sweep") return Command{Kind::kStartSweep};
   if (mode == "delayed")
     return std::unexpected("mode delayed is entered by its delay: set a delay in milliseconds");
   return std::unexpected("unknown mode \"" + rt::printable(mode) +
@@ -44,6 +38,22 @@ Requested requestView(std::uint32_t view, const Status& now) {
     return std::unexpected("there is no view " + std::to_string(view) + ": the views are 1 to " +
                            std::to_string(now.cameras.size()));
   return Command{.kind = Kind::kSetView, .camera = view - 1};
+}
+
+std::string_view refusalOf(CommandOutcome outcome) {
+  switch (outcome) {
+    case CommandOutcome::kApplied:
+      return "";
+    case CommandOutcome::kNoPictureYet:
+      return "no picture was shown yet, so there is no moment to stop at: wait for the cameras";
+    case CommandOutcome::kNoSuchView:
+      return "there is no such view";
+    case CommandOutcome::kAtMemorysEnd:
+      return "that moment is no longer stored: this is the oldest one";
+    case CommandOutcome::kNothingNewer:
+      return "that moment has not come yet: this is the newest one";
+  }
+  return "";
 }
 
 std::expected<std::array<double, 3>, std::string> requestTarget(double x_m, double y_m,

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <expected>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,15 +13,18 @@
 /// Errors   One line for the person who asked.
 namespace appliance {
 
-/// Nothing to do is an empty optional: a box that is live stays live.
-using Requested = std::expected<std::optional<Command>, std::string>;
+using Requested = std::expected<Command, std::string>;
 
-[[nodiscard]] Requested requestMode(std::string_view mode, const Status& now);
+/// A command that names the state, so that the same request twice changes nothing.
+[[nodiscard]] Requested requestMode(std::string_view mode);
 [[nodiscard]] Requested requestDelay(std::uint32_t delay_ms, const Status& now);
 /// @p view counts from 1.
 [[nodiscard]] Requested requestView(std::uint32_t view, const Status& now);
 [[nodiscard]] std::expected<std::array<double, 3>, std::string> requestTarget(double x_m,
                                                                               double y_m,
                                                                               double z_m);
+
+/// Why the director did not do what was asked, and what to do; empty: it did.
+[[nodiscard]] std::string_view refusalOf(CommandOutcome outcome);
 
 }  // namespace appliance

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
@@ -11,25 +13,47 @@
 #include "appliance/control/bus_link.h"
 #include "appliance/control/bus_values.h"
 #include "appliance/control/control_requests.h"
+#include "appliance/control/job_objects.h"
 #include "appliance/control/peer_watch.h"
+#include "appliance/control/pending_calls.h"
 #include "appliance/control/status_properties.h"
 
 namespace appliance {
 
+namespace {
+
+/// A message that is answered later.
+struct MessageRelease {
+  void operator()(sd_bus_message* message) const { sd_bus_message_unref(message); }
+};
+using Message = std::unique_ptr<sd_bus_message, MessageRelease>;
+
+}  // namespace
+
 struct ControlServer::Implementation {
-  Implementation(EventLoop& loop, Place place, ControlSink& to, Status first);
+  Implementation(EventLoop& loop, Place place, ControlSink& to, const StatusSource& from,
+                 JobRegistry& registry);
 
   int offer(sd_bus* bus);
   void releaseFor(const std::string& peer);
   void takeBackFrom(const std::string& peer);
 
+  /// Answers @p message once the director has carried out its command.
+  int await(sd_bus_message* message, CommandId id);
+  void answer(const CommandAnswer& answer);
+  void giveUp(rt::Timestamp now);
+
   ControlSink& sink;
+  const StatusSource& source;
   Status status;     // of the last tick
   std::string json;  // the same, once somebody asked
   std::vector<sd_bus_vtable> properties;
   std::vector<BusObject> objects;
   std::set<std::string> screen_holders;  // unique names
+  PendingCalls<Message> waiting;         // for the director
+  std::vector<CommandAnswer> collected;  // since the last tick
   PeerWatch peers;
+  JobObjects jobs;
   BusLink link;
 };
 
@@ -42,18 +66,18 @@ int busy(sd_bus_error* error) {
                           "too many requests wait to be carried out: try again");
 }
 
-/// Carries out one request and answers its message.
+/// Gives one request to the director; its message is answered when that has carried it out.
 int answer(Server& server, sd_bus_message* message, const Requested& requested,
            sd_bus_error* error) {
   if (!requested) return refuse(error, requested.error());
-  if (*requested && !server.sink.command(**requested)) return busy(error);
-  return sd_bus_reply_method_return(message, "");
+  const auto id = server.sink.command(*requested);
+  return id ? server.await(message, *id) : busy(error);
 }
 
 int setMode(Server& server, sd_bus_message* message, sd_bus_error* error) {
   const char* mode = nullptr;
   if (const int r = sd_bus_message_read(message, "s", &mode); r < 0) return r;
-  return answer(server, message, requestMode(mode, server.status), error);
+  return answer(server, message, requestMode(mode), error);
 }
 
 int setDelay(Server& server, sd_bus_message* message, sd_bus_error* error) {
@@ -85,17 +109,22 @@ int releaseTarget(Server& server, sd_bus_message* message, sd_bus_error* /*error
 }
 
 int freeze(Server& server, sd_bus_message* message, sd_bus_error* error) {
-  return answer(server, message, Command{Command::Kind::kFreezeToggle}, error);
+  return answer(server, message, Command{Command::Kind::kFreeze}, error);
+}
+
+int thaw(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  return answer(server, message, Command{Command::Kind::kThaw}, error);
 }
 
 int sweep(Server& server, sd_bus_message* message, sd_bus_error* error) {
-  return answer(server, message, Command{Command::Kind::kSweep}, error);
+  return answer(server, message, Command{Command::Kind::kStartSweep}, error);
 }
 
 int releaseScreen(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
-  if (const int r = server.peers.add(message); r < 0) return r;
   const char* sender = sd_bus_message_get_sender(message);
-  server.releaseFor(sender != nullptr ? sender : "");
+  if (sender == nullptr) return -EINVAL;
+  if (const int r = server.peers.add(sd_bus_message_get_bus(message), sender); r < 0) return r;
+  server.releaseFor(sender);
   return sd_bus_reply_method_return(message, "");
 }
 
@@ -110,12 +139,20 @@ int statusJson(Server& server, sd_bus_message* message, sd_bus_error* /*error*/)
   return sd_bus_reply_method_return(message, "s", server.json.c_str());
 }
 
+int metricsJson(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
+  return sd_bus_reply_method_return(message, "s", server.source.metrics().c_str());
+}
+
 int getProperty(Server& server, const char* name, sd_bus_message* reply) {
   const auto property = std::ranges::find(statusProperties(), std::string_view(name),
                                           [](const auto& each) { return each.name; });
   if (property == statusProperties().end()) return -ENOENT;
   return appendValue(reply, property->value(server.status));
 }
+
+constexpr rt::Nanoseconds kDirectorsTime = std::chrono::seconds(1);
+constexpr const char* kRefusedError = "org.kagami.Kagami1.Error.Refused";
+constexpr const char* kNotAppliedError = "org.kagami.Kagami1.Error.NotApplied";
 
 // Who may call is the bus's policy (systemd/org.kagami.Kagami1.conf), not sd-bus's own rule.
 constexpr std::uint64_t kOpenToAll = SD_BUS_VTABLE_UNPRIVILEGED;
@@ -136,6 +173,8 @@ std::vector<sd_bus_vtable> propertyTable() {
   }
   table.push_back(SD_BUS_METHOD_WITH_ARGS("Status", SD_BUS_NO_ARGS, SD_BUS_RESULT("s", json),
                                           kOn<statusJson>, kOpenToAll));
+  table.push_back(SD_BUS_METHOD_WITH_ARGS("GetMetrics", SD_BUS_NO_ARGS, SD_BUS_RESULT("s", json),
+                                          kOn<metricsJson>, kOpenToAll));
   table.push_back(SD_BUS_VTABLE_END);
   return table;
 }
@@ -153,6 +192,7 @@ const auto kControlTable = std::to_array<sd_bus_vtable>({
     SD_BUS_METHOD_WITH_ARGS("ReleaseTarget", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<releaseTarget>,
                             kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Freeze", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<freeze>, kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("Thaw", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<thaw>, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Sweep", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<sweep>, kOpenToAll),
     SD_BUS_VTABLE_END,
 });
@@ -169,17 +209,26 @@ const auto kMaintenanceTable = std::to_array<sd_bus_vtable>({
 }  // namespace
 
 ControlServer::Implementation::Implementation(EventLoop& loop, Place place, ControlSink& to,
-                                              Status first)
+                                              const StatusSource& from, JobRegistry& registry)
     : sink(to),
-      status(std::move(first)),
+      source(from),
+      status(from.status()),
       properties(propertyTable()),
       objects{{kControlPath, kStatusInterface, properties.data(), this},
               {kControlPath, kControlInterface, kControlTable.data(), this},
               {kControlPath, kMaintenanceInterface, kMaintenanceTable.data(), this}},
-      peers([this](const std::string& peer) { takeBackFrom(peer); }),
+      peers([this, &registry](const std::string& peer) {
+        takeBackFrom(peer);
+        registry.ownerLeft(peer);
+      }),
+      jobs(registry, peers),
       link(loop, std::move(place.bus), std::move(place.name),
            {.offer = [this](sd_bus* bus) { return offer(bus); },
-            .lost = [this] { peers.loseAll(); }}) {}
+            .lost =
+                [this] {
+                  waiting.clear();
+                  peers.loseAll();
+                }}) {}
 
 int ControlServer::Implementation::offer(sd_bus* bus) {
   for (const BusObject& object : objects) {
@@ -187,7 +236,31 @@ int ControlServer::Implementation::offer(sd_bus* bus) {
                                            object.vtable, object.target);
     if (r < 0) return r;
   }
-  return 0;
+  return jobs.offer(bus);
+}
+
+int ControlServer::Implementation::await(sd_bus_message* message, CommandId id) {
+  waiting.add(id, rt::now() + kDirectorsTime, Message(sd_bus_message_ref(message)));
+  return 1;  // handled; the reply follows
+}
+
+void ControlServer::Implementation::answer(const CommandAnswer& answer) {
+  const auto call = waiting.take(answer.id);
+  if (!call) return;
+  const std::string why(refusalOf(answer.outcome));
+  // A failure means a bus that is being lost, and with it the caller.
+  if (why.empty()) {
+    (void)sd_bus_reply_method_return(call->get(), "");
+  } else {
+    (void)sd_bus_reply_method_errorf(call->get(), kRefusedError, "%s", why.c_str());
+  }
+}
+
+void ControlServer::Implementation::giveUp(rt::Timestamp now) {
+  for (const Message& call : waiting.takeOverdue(now))
+    (void)sd_bus_reply_method_errorf(call.get(), kNotAppliedError,
+                                     "the director has not carried it out within 1 s: see kagami "
+                                     "status");
 }
 
 void ControlServer::Implementation::releaseFor(const std::string& peer) {
@@ -200,13 +273,19 @@ void ControlServer::Implementation::takeBackFrom(const std::string& peer) {
   sink.setScreenReleased(false);
 }
 
-ControlServer::ControlServer(EventLoop& loop, Place place, ControlSink& sink, Status first)
+ControlServer::ControlServer(EventLoop& loop, Place place, ControlSink& sink,
+                             const StatusSource& source, JobRegistry& jobs)
     : implementation_(
-          std::make_unique<Implementation>(loop, std::move(place), sink, std::move(first))) {}
+          std::make_unique<Implementation>(loop, std::move(place), sink, source, jobs)) {}
 ControlServer::~ControlServer() = default;
 
 void ControlServer::show(const BusObject& object) {
   implementation_->objects.push_back(object);
+}
+
+void ControlServer::collectAnswers() {
+  Implementation& own = *implementation_;
+  while (const auto answer = own.sink.nextAnswer()) own.collected.push_back(*answer);
 }
 
 void ControlServer::tick(rt::Timestamp now, Status status) {
@@ -215,11 +294,15 @@ void ControlServer::tick(rt::Timestamp now, Status status) {
   std::vector<const char*> changed = changedProperties(own.status, status);
   own.status = std::move(status);
   own.json.clear();
-  if (changed.empty() || !connected()) return;
-  changed.push_back(nullptr);
-  // A failure means a bus that is being lost; the link sees that itself.
-  (void)sd_bus_emit_properties_changed_strv(own.link.bus(), kControlPath, kStatusInterface,
-                                            const_cast<char**>(changed.data()));
+  if (!changed.empty() && connected()) {
+    changed.push_back(nullptr);
+    // A failure means a bus that is being lost; the link sees that itself.
+    (void)sd_bus_emit_properties_changed_strv(own.link.bus(), kControlPath, kStatusInterface,
+                                              const_cast<char**>(changed.data()));
+  }
+  own.jobs.tick(own.link.bus());
+  for (const CommandAnswer& answer : std::exchange(own.collected, {})) own.answer(answer);
+  own.giveUp(now);
 }
 
 bool ControlServer::connected() const {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "appliance/control/bus_object.h"
+#include "appliance/jobs/job_registry.h"
 #include "appliance/loop/event_loop.h"
 #include "appliance/status/status.h"
 #include "rt/clock.h"
@@ -18,7 +19,9 @@ namespace appliance {
 /// what is wrong goes back to the caller as an error of one line, and nothing invalid reaches the
 /// sink. Views count from 1 on the bus.
 ///
-/// Threads  The event loop's. The sink is called from there only, and outlives the server.
+/// A command is answered when the director has carried it out, or with an error that says why not.
+///
+/// Threads  The event loop's. Sink, source and jobs outlive the server.
 /// RT       Nothing here is RT safe.
 /// Errors   A bus that is not there, or that goes away, is an outcome: it is tried again, and
 ///          trouble() says so.
@@ -29,7 +32,8 @@ class ControlServer {
     std::string name;  ///< the well-known name to own
   };
 
-  ControlServer(EventLoop& loop, Place place, ControlSink& sink, Status first);
+  ControlServer(EventLoop& loop, Place place, ControlSink& sink, const StatusSource& source,
+                JobRegistry& jobs);
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
@@ -37,8 +41,12 @@ class ControlServer {
   /// Shows one more interface of an object; before the first tick().
   void show(const BusObject& object);
 
-  /// Takes the status that is shown from now on, signals what changed, and looks after the
-  /// connection.
+  /// Takes the answers of the director that have come. Their callers get them at the next tick(),
+  /// whose status was taken after this, so that it shows the effect.
+  void collectAnswers();
+
+  /// Takes the status that is shown from now on, signals what changed, answers what waited, and
+  /// looks after the connection.
   void tick(rt::Timestamp now, Status status);
 
   [[nodiscard]] bool connected() const;

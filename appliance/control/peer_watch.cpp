@@ -7,15 +7,13 @@
 
 namespace appliance {
 
-int PeerWatch::add(sd_bus_message* message) {
-  const char* sender = sd_bus_message_get_sender(message);
-  if (sender == nullptr || watched_.contains(sender)) return 0;
+int PeerWatch::add(sd_bus* bus, const std::string& peer) {
+  if (watched_.contains(peer)) return 0;
   sd_bus_track* made = nullptr;
-  if (const int r = sd_bus_track_new(sd_bus_message_get_bus(message), &made, onGone, this); r < 0)
-    return r;
+  if (const int r = sd_bus_track_new(bus, &made, onGone, this); r < 0) return r;
   Track track(made);
-  if (const int r = sd_bus_track_add_sender(made, message); r < 0) return r;
-  watched_.emplace(sender, std::move(track));
+  if (const int r = sd_bus_track_add_name(made, peer.c_str()); r < 0) return r;
+  watched_.emplace(peer, std::move(track));
   return 0;
 }
 

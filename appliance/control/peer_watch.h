@@ -19,8 +19,8 @@ class PeerWatch {
   PeerWatch(const PeerWatch&) = delete;
   PeerWatch& operator=(const PeerWatch&) = delete;
 
-  /// Watches the sender of @p message from now on. Returns a negative errno if that is impossible.
-  [[nodiscard]] int add(sd_bus_message* message);
+  /// Watches @p peer, a unique name, from now on. Returns a negative errno if that is impossible.
+  [[nodiscard]] int add(sd_bus* bus, const std::string& peer);
   void remove(const std::string& peer) { watched_.erase(peer); }
 
   /// The bus is gone, and every peer with it.

@@ -56,4 +56,13 @@ enum class CommandOutcome : std::uint8_t {
   kNothingNewer,  ///< the moment asked for has not come yet
 };
 
+/// Names a command whose giver waits for its outcome; 0: it does not wait.
+using CommandId = std::uint64_t;
+
+/// The outcome of one command, on its way back to its giver.
+struct CommandAnswer {
+  CommandId id = 0;
+  CommandOutcome outcome = CommandOutcome::kApplied;
+};
+
 }  // namespace appliance

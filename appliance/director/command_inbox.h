@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "appliance/director/command.h"
+#include "appliance/director/command_answers.h"
 #include "rt/annotations.h"
 #include "rt/clock.h"
 #include "rt/doorbell.h"
@@ -19,6 +20,7 @@ namespace appliance {
 struct CommandEvent {
   Command command;
   rt::Timestamp at;
+  CommandId id = 0;
 };
 
 /// The end of the inbox that one thread gives its commands to.
@@ -73,6 +75,10 @@ class CommandInbox {
     return std::nullopt;
   }
 
+  /// The way back, for commands with an id.
+  [[nodiscard]] CommandAnswers& answers() { return answers_; }
+  [[nodiscard]] const CommandAnswers& answers() const { return answers_; }
+
   [[nodiscard]] const std::vector<std::unique_ptr<CommandSender>>& senders() const {
     return senders_;
   }
@@ -80,6 +86,7 @@ class CommandInbox {
  private:
   rt::Doorbell& bell_;
   std::vector<std::unique_ptr<CommandSender>> senders_;
+  CommandAnswers answers_;
 };
 
 }  // namespace appliance

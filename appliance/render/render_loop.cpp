@@ -98,6 +98,7 @@ void RenderLoop::turn() noexcept {
   counters_.exposure_middle = wanted.exposure_middle;
   parts_.shown.exposure_middle.store(wanted.exposure_middle, std::memory_order_relaxed);
   status_.publish(counters_);
+  answerCommands();
   parts_.shown.mode.store(wanted.shot.mode, std::memory_order_relaxed);
 }
 
@@ -113,10 +114,23 @@ void RenderLoop::sayWhatIsShown(const Shot& shot) noexcept {
   parts_.overlay.subject_changed.ring();
 }
 
+/// After the status that shows what they did.
+void RenderLoop::answerCommands() noexcept {
+  const auto outcomes = director_.outcomes();
+  bool waited = false;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (command_ids_[i] == 0) continue;
+    parts_.commands.answers().give({.id = command_ids_[i], .outcome = outcomes[i]});
+    waited = true;
+  }
+  if (waited) parts_.commands.answers().ring();
+}
+
 void RenderLoop::takeCommands() noexcept {
   while (command_count_ < commands_.size()) {
     const auto event = parts_.commands.tryTake();
     if (!event) break;
+    command_ids_[command_count_] = event->id;
     commands_[command_count_++] = event->command;
     if (first_command_ == rt::Timestamp{}) first_command_ = event->at;
   }

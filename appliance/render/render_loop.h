@@ -104,6 +104,7 @@ class RenderLoop {
   [[nodiscard]] rt::Timestamp nextWake(rt::Timestamp now) const noexcept;
   void turn() noexcept;
   void takeCommands() noexcept;
+  void answerCommands() noexcept;
   void followScreen() noexcept;
   void sayWhatIsShown(const Shot& shot) noexcept;
   [[nodiscard]] rt::Timestamp exposureMiddle(rt::Timestamp edge) const noexcept;
@@ -127,6 +128,7 @@ class RenderLoop {
 
   // Since the last picture.
   std::array<Command, kMostCommands> commands_{};
+  std::array<CommandId, kMostCommands> command_ids_{};
   std::size_t command_count_ = 0;
   rt::Timestamp first_command_;  // when the oldest of them was given; the epoch: none
 

@@ -12,15 +12,17 @@ namespace appliance {
 
 std::expected<std::unique_ptr<BoxService>, std::string> BoxService::start(
     EventLoop& loop, const ControlServer::Place& place, ControlSink& sink,
-    const StatusSource& source, std::span<const BusObject> objects) {
+    const StatusSource& source, JobRegistry& jobs, std::span<const BusObject> objects) {
   std::unique_ptr<BoxService> service(new BoxService(loop, source));
   if (place.bus != "none")
-    service->control_ = std::make_unique<ControlServer>(loop, place, sink, source.status());
+    service->control_ = std::make_unique<ControlServer>(loop, place, sink, source, jobs);
   if (service->control_)
     for (const BusObject& object : objects) service->control_->show(object);
   BoxService& serving = *service;
   auto added = loop.every(kTick, [&serving] { serving.tick(); });
   if (added) added = loop.every(kWatchdog, [] { (void)sd_notify(0, "WATCHDOG=1"); });
+  if (added && service->control_)
+    added = loop.watch(sink.answersFd(), [&serving] { serving.tick(); });
   if (!added) return std::unexpected(added.error());
   serving.tick();
   if (serving.control_) serving.waitForName();
@@ -44,6 +46,7 @@ std::expected<void, std::string> BoxService::run() {
 
 void BoxService::tick() {
   const rt::Timestamp now = rt::now();
+  if (control_) control_->collectAnswers();
   Status status = source_.status();
   std::vector<Condition> more;
   if (control_) more.push_back(controlCondition());

@@ -30,7 +30,7 @@ class BoxService {
   /// the service.
   [[nodiscard]] static std::expected<std::unique_ptr<BoxService>, std::string> start(
       EventLoop& loop, const ControlServer::Place& place, ControlSink& sink,
-      const StatusSource& source, std::span<const BusObject> objects = {});
+      const StatusSource& source, JobRegistry& jobs, std::span<const BusObject> objects = {});
 
   BoxService(const BoxService&) = delete;
   BoxService& operator=(const BoxService&) = delete;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,16 +61,22 @@ class StatusSource {
  public:
   virtual ~StatusSource() = default;
   [[nodiscard]] virtual Status status() const = 0;
+  /// One JSON object of everything that is counted, by name.
+  [[nodiscard]] virtual std::string metrics() const = 0;
 };
 
 /// Where the control interface puts what was asked for; everything given is valid.
 ///
 /// Threads  The thread that serves the control interface.
-/// Errors   false: not taken, because too much waits already.
+/// Errors   false, or no id: not taken, because too much waits already.
 class ControlSink {
  public:
   virtual ~ControlSink() = default;
-  [[nodiscard]] virtual bool command(const Command& command) = 0;
+  /// Each command that was taken has one answer with this id.
+  [[nodiscard]] virtual std::optional<CommandId> command(const Command& command) = 0;
+  [[nodiscard]] virtual std::optional<CommandAnswer> nextAnswer() = 0;
+  /// Readable while answers wait.
+  [[nodiscard]] virtual int answersFd() const = 0;
   /// Rig frame, metres; finite.
   [[nodiscard]] virtual bool setTarget(const std::array<double, 3>& target_m) = 0;
   /// What was measured counts again, from the shown moment on.

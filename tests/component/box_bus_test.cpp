@@ -30,10 +30,11 @@ appliance::MadePart makeSample(const appliance::Shared& shared) {
 void serve(Box& box, const std::string& address, const std::stop_token& stop) {
   const auto loop = appliance::EventLoop::create();
   ASSERT_TRUE(loop.has_value()) << loop.error();
-  appliance::ControlServer server(**loop, {.bus = address, .name = "org.kagami.Kagami1"}, box,
-                                  box.status());
+  appliance::ControlServer server(**loop, {.bus = address, .name = "org.kagami.Kagami1"}, box, box,
+                                  box.jobs());
   for (const appliance::BusObject& object : box.busObjects()) server.show(object);
   ASSERT_TRUE((*loop)->every(std::chrono::milliseconds(10), [&] {
+    server.collectAnswers();
     server.tick(rt::now(), box.status());
     if (stop.stop_requested()) (*loop)->requestStop();
   }));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "appliance/control/control_client.h"
+#include "appliance/jobs/job_thread.h"
 #include "tests/support/becomes_true.h"
 #include "tests/support/control_daemon.h"
 #include "tests/support/output_of.h"
@@ -33,7 +35,7 @@ class ControlInterface : public testing::Test {
   void SetUp() override {
     if (bus_.address().empty())
       GTEST_SKIP() << "dbus-daemon cannot be started here (package dbus-daemon)";
-    daemon_.emplace(bus_.address(), box_);
+    daemon_.emplace(bus_.address(), box_, jobs_);
     ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();
   }
 
@@ -45,6 +47,7 @@ class ControlInterface : public testing::Test {
 
   test::PrivateBus bus_;
   Box box_;
+  appliance::JobRegistry jobs_;  // the daemon's thread has it while it runs
   std::optional<Daemon> daemon_;
 };
 
@@ -59,7 +62,7 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
               ElementsAre(Command{Command::Kind::kGoLive},
                           Command{.kind = Command::Kind::kSetDelay, .delay = milliseconds(2500)},
                           Command{.kind = Command::Kind::kSetView, .camera = 19},
-                          Command{Command::Kind::kFreezeToggle}, Command{Command::Kind::kSweep}));
+                          Command{Command::Kind::kFreeze}, Command{Command::Kind::kStartSweep}));
   EXPECT_TRUE(kagami.setTarget({1, 2, 0.5}).has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{1, 2, 0.5}));
   EXPECT_TRUE(kagami.releaseTarget().has_value());
@@ -87,6 +90,18 @@ TEST_F(ControlInterface, RefusesInvalidArgumentsWithOneLineAndChangesNothing) {
 TEST_F(ControlInterface, SaysWhenTheDirectorTakesNoMore) {
   box_.fill();
   EXPECT_THAT(client().freeze().error(), HasSubstr("try again"));
+}
+
+TEST_F(ControlInterface, ACommandThatTheDirectorRefusesSaysWhy) {
+  box_.answerWith(appliance::CommandOutcome::kNoPictureYet);
+  EXPECT_THAT(client().freeze().error(), HasSubstr("no picture was shown yet"));
+}
+
+TEST_F(ControlInterface, ACommandIsAnsweredWhenItIsCarriedOutAndNotBefore) {
+  box_.answerWith(std::nullopt);
+  const rt::Timestamp begin = rt::now();
+  EXPECT_THAT(client().freeze().error(), HasSubstr("has not carried it out within 1 s"));
+  EXPECT_GE(rt::now() - begin, milliseconds(1000));
 }
 
 TEST_F(ControlInterface, StatusIsOneJsonObjectWithViewsFromOne) {
@@ -179,9 +194,41 @@ TEST_F(ControlInterface, TheScreenComesBackWhenThePeerThatHeldItIsGone) {
       test::becomesTrue([&] { return box_.status().screen == hal::ScreenState::kShowing; }));
 }
 
+TEST_F(ControlInterface, AJobIsAnObjectThatCanBeReadAndCancelled) {
+  daemon_.reset();  // the registry is this thread's until the next one runs
+  auto work = appliance::JobThread::start(
+      [](appliance::JobThread::Progress& progress, const std::stop_token& stop) {
+        progress.set(0.5);
+        while (!stop.stop_requested()) std::this_thread::yield();
+        return std::expected<std::string, std::string>("seen the half");
+      });
+  ASSERT_TRUE(work.has_value()) << work.error();
+  ASSERT_TRUE(jobs_.start({.kind = "check", .owner = "", .work = std::move(*work)}).has_value());
+  daemon_.emplace(bus_.address(), box_, jobs_);
+  ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();
+
+  const std::string busctl = "busctl --address='" + bus_.address() + "' ";
+  const std::string job = " org.kagami.Kagami1 /org/kagami/Kagami1/jobs/1 org.kagami.Kagami1.Job ";
+  const auto get = [&](const std::string& name) {
+    return test::outputOf(busctl + "get-property" + job + name);
+  };
+  EXPECT_EQ(get("Kind"), "s \"check\"\n");
+  EXPECT_TRUE(test::becomesTrue([&] { return get("Progress") == "d 0.5\n"; }));
+  EXPECT_EQ(get("State"), "s \"running\"\n");
+  EXPECT_THAT(test::outputOf(busctl + "tree org.kagami.Kagami1"),
+              HasSubstr("/org/kagami/Kagami1/jobs/1"));
+  EXPECT_EQ(test::outputOf(busctl + "call" + job + "Cancel"), "");
+  EXPECT_TRUE(test::becomesTrue([&] { return get("State") == "s \"cancelled\"\n"; }));
+  EXPECT_EQ(get("Result"), "s \"seen the half\"\n");
+  EXPECT_THAT(test::outputOf(busctl + "get-property org.kagami.Kagami1 "
+                                      "/org/kagami/Kagami1/jobs/2 org.kagami.Kagami1.Job State"),
+              HasSubstr("Unknown object"));
+}
+
 TEST_F(ControlInterface, ASecondDaemonOnTheSameBusIsToldSo) {
   Box box;
-  const Daemon second(bus_.address(), box);
+  appliance::JobRegistry jobs;
+  const Daemon second(bus_.address(), box, jobs);
   ASSERT_TRUE(second.waitForTrouble());
   EXPECT_THAT(second.trouble(), HasSubstr("is another kagamid running?"));
 }
@@ -202,7 +249,8 @@ TEST_F(ControlInterface, IsThereAgainAfterTheBusWasGone) {
 
 TEST(ControlBus, AnUnreachableBusIsAnOutcome) {
   Box box;
-  const Daemon daemon("unix:path=/nonexistent/bus", box);
+  appliance::JobRegistry jobs;
+  const Daemon daemon("unix:path=/nonexistent/bus", box, jobs);
   ASSERT_TRUE(daemon.waitForTrouble());
   EXPECT_THAT(daemon.trouble(), HasSubstr("cannot reach the bus unix:path=/nonexistent/bus"));
   EXPECT_THAT(ControlClient::open("not an address", kName).error(), HasSubstr("cannot reach"));

@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -21,12 +22,22 @@ inline constexpr const char* kName = "org.kagami.Kagami1";
 /// The daemon's side of both interfaces: keeps what came, answers with a fixed status.
 class Box : public appliance::ControlSink, public appliance::StatusSource {
  public:
-  bool command(const appliance::Command& command) override {
+  std::optional<appliance::CommandId> command(const appliance::Command& command) override {
     const std::scoped_lock lock(mutex_);
-    if (full_) return false;
+    if (full_) return std::nullopt;
     commands_.push_back(command);
-    return true;
+    if (outcome_) answers_.push_back({.id = commands_.size(), .outcome = *outcome_});
+    return commands_.size();
   }
+  std::optional<appliance::CommandAnswer> nextAnswer() override {
+    const std::scoped_lock lock(mutex_);
+    if (answers_.empty()) return std::nullopt;
+    const appliance::CommandAnswer answer = answers_.back();
+    answers_.pop_back();
+    return answer;
+  }
+  [[nodiscard]] int answersFd() const override { return -1; }  // asked at each tick
+  [[nodiscard]] std::string metrics() const override { return R"({"trigger.missed":0})"; }
   bool setTarget(const std::array<double, 3>& target_m) override {
     const std::scoped_lock lock(mutex_);
     target_m_ = target_m;
@@ -65,6 +76,11 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     const std::scoped_lock lock(mutex_);
     degraded_.push_back({.key = "sensor", .text = line});
   }
+  /// What becomes of the commands from now on; none: they are not answered.
+  void answerWith(std::optional<appliance::CommandOutcome> outcome) {
+    const std::scoped_lock lock(mutex_);
+    outcome_ = outcome;
+  }
   void fill() {
     const std::scoped_lock lock(mutex_);
     full_ = true;
@@ -80,6 +96,8 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
   std::array<double, 3> target_m_{0, 0, 1};
   std::vector<appliance::Remark> degraded_{{"memory", "memory is not locked"},
                                            {"camera 7", "view 7 \"rear\" is lost"}};
+  std::vector<appliance::CommandAnswer> answers_;
+  std::optional<appliance::CommandOutcome> outcome_ = appliance::CommandOutcome::kApplied;
   bool full_ = false;
   hal::ScreenState screen_ = hal::ScreenState::kShowing;
 };
@@ -87,12 +105,13 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
 /// The event loop of a daemon that serves @p box, on a thread of its own; a tick each 10 ms.
 class Daemon {
  public:
-  Daemon(const std::string& bus, Box& box)
-      : thread_([this, bus, &box](const std::stop_token& stop) {
+  Daemon(const std::string& bus, Box& box, appliance::JobRegistry& jobs)
+      : thread_([this, bus, &box, &jobs](const std::stop_token& stop) {
           const auto loop = appliance::EventLoop::create();
           ASSERT_TRUE(loop.has_value()) << loop.error();
-          appliance::ControlServer server(**loop, {.bus = bus, .name = kName}, box, box.status());
+          appliance::ControlServer server(**loop, {.bus = bus, .name = kName}, box, box, jobs);
           ASSERT_TRUE((*loop)->every(std::chrono::milliseconds(10), [&] {
+            server.collectAnswers();
             server.tick(rt::now(), box.status());
             const std::scoped_lock lock(mutex_);
             trouble_ = server.trouble();

@@ -22,32 +22,29 @@ Status running(Mode mode) {
   return status;
 }
 
-TEST(ControlRequests, AModeIsACommandOnlyWhereItChangesSomething) {
-  const auto frozen = appliance::requestMode("frozen", running(Mode::kLive));
-  ASSERT_TRUE(frozen.has_value());
-  EXPECT_EQ(*frozen, Command{Command::Kind::kFreezeToggle});
-  // A toggle sent to a frozen box would thaw it.
-  EXPECT_EQ(*appliance::requestMode("frozen", running(Mode::kFrozen)), std::nullopt);
-  EXPECT_EQ(*appliance::requestMode("frozen", running(Mode::kSweep)),
-            Command{Command::Kind::kFreezeToggle});
-  EXPECT_EQ(*appliance::requestMode("sweep", running(Mode::kLive)), Command{Command::Kind::kSweep});
-  EXPECT_EQ(*appliance::requestMode("sweep", running(Mode::kSweep)), std::nullopt);
-  EXPECT_EQ(*appliance::requestMode("live", running(Mode::kDelayed)),
-            Command{Command::Kind::kGoLive});
+TEST(ControlRequests, AModeIsACommandThatNamesTheStateAndNeverAToggle) {
+  EXPECT_EQ(appliance::requestMode("frozen").value(), Command{Command::Kind::kFreeze});
+  EXPECT_EQ(appliance::requestMode("sweep").value(), Command{Command::Kind::kStartSweep});
+  EXPECT_EQ(appliance::requestMode("live").value(), Command{Command::Kind::kGoLive});
 }
 
 TEST(ControlRequests, RefusesUnknownModesByNamingTheKnownOnes) {
-  EXPECT_THAT(appliance::requestMode("Live", running(Mode::kLive)).error(),
-              HasSubstr("live, delayed, frozen and sweep"));
-  EXPECT_THAT(appliance::requestMode("delayed", running(Mode::kLive)).error(),
-              HasSubstr("set a delay"));
+  EXPECT_THAT(appliance::requestMode("Live").error(), HasSubstr("live, delayed, frozen and sweep"));
+  EXPECT_THAT(appliance::requestMode("delayed").error(), HasSubstr("set a delay"));
+}
+
+TEST(ControlRequests, EveryOutcomeButSuccessHasALine) {
+  using enum appliance::CommandOutcome;
+  EXPECT_EQ(appliance::refusalOf(kApplied), "");
+  for (const auto outcome : {kNoPictureYet, kNoSuchView, kAtMemorysEnd, kNothingNewer})
+    EXPECT_NE(appliance::refusalOf(outcome), "");
 }
 
 TEST(ControlRequests, ViewsCountFromOne) {
   const Status now = running(Mode::kLive);
-  EXPECT_EQ(**appliance::requestView(1, now),
+  EXPECT_EQ(*appliance::requestView(1, now),
             (Command{.kind = Command::Kind::kSetView, .camera = 0}));
-  EXPECT_EQ(**appliance::requestView(20, now),
+  EXPECT_EQ(*appliance::requestView(20, now),
             (Command{.kind = Command::Kind::kSetView, .camera = 19}));
   EXPECT_THAT(appliance::requestView(0, now).error(), HasSubstr("the views are 1 to 20"));
   EXPECT_FALSE(appliance::requestView(21, now).has_value());
@@ -58,7 +55,7 @@ TEST(ControlRequests, ADelayReachesAtMostToTheHistorysEnd) {
   const Status now = running(Mode::kLive);
   const auto oldest = appliance::requestDelay(7500, now);
   ASSERT_TRUE(oldest.has_value()) << oldest.error();
-  EXPECT_EQ((*oldest)->delay, milliseconds(7500));
+  EXPECT_EQ(oldest->delay, milliseconds(7500));
   EXPECT_THAT(appliance::requestDelay(7501, now).error(), HasSubstr("the stored 7500 ms"));
 }
 
