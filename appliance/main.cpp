@@ -22,6 +22,7 @@
 #include "appliance/service/box_service.h"
 #include "appliance/site/site.h"
 #include "appliance/site/site_light.h"
+#include "appliance/version/version.h"
 #include "ui-kms/draw_workers.h"
 #include "ui-kms/kms_display.h"
 #include "ui-kms/offscreen_display.h"
@@ -185,7 +186,7 @@ int main(int argc, char** argv) {
   app.add_flag("--check-config", options.check_config, "Check configuration and rig, then end");
   app.add_flag("--release-lines", options.release_lines,
                "Drive the trigger lines inactive, then end: for after a crash");
-  app.set_version_flag("--version", KAGAMI_VERSION);
+  app.set_version_flag("--version", std::string(version()));
   CLI11_PARSE(app, argc, argv);
 
   if (options.release_lines) {

@@ -1,9 +1,11 @@
 #include "appliance/box/run_facts.h"
 
+#include <string>
 #include <utility>
 
 #include "appliance/capture/camera_status.h"
 #include "appliance/trace/process_facts.h"
+#include "appliance/version/version.h"
 #include "hal/pixel_format.h"
 
 namespace appliance {
@@ -17,7 +19,8 @@ RunRecord runRecord(const Shared& shared, const Status& status) {
   }
   const hal::DisplayMode mode = shared.display.mode();
   const rt::ArenaReport& memory = shared.history.memory().report();
-  return {.cameras = shared.history.cameras(),
+  return {.version = std::string(version()),
+          .cameras = shared.history.cameras(),
           .width_px = shared.rig.cameras.front().width_px,
           .height_px = shared.rig.cameras.front().height_px,
           .pixel_format = hal::genicamName(shared.config.cameras.pixel_format),

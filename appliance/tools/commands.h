@@ -7,8 +7,13 @@ class App;
 }
 
 /// The commands of `kagami`, one function each: it adds its options to @p kagami and a callback
-/// that does the work. A callback that cannot do it prints one line and throws CLI::RuntimeError.
+/// that does the work. A callback that cannot do it prints one line and throws CommandFailed.
 namespace appliance {
+
+/// Ends the command with this exit status; what is wrong was printed.
+struct CommandFailed {
+  int status = 1;
+};
 
 /// Where the daemon's control interface is looked for.
 struct ControlPlace {

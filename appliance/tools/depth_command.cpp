@@ -71,7 +71,7 @@ void watch(const Options& options) {
   std::printf("sensor     %s\n%s", depthText({status, record.rate_hz()}).c_str(),
               recordText(record).c_str());
   std::printf("clock      %+.1f ppm against this machine's\n", status.drift_ppm);
-  if (record.frames() == 0 || record.lost() > 0) throw CLI::RuntimeError(1);
+  if (record.frames() == 0 || record.lost() > 0) throw CommandFailed();
 }
 
 /// The panel's first lamp, switched after 0.2 to 0.8 s each time.

@@ -1,10 +1,8 @@
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
-
 #include "appliance/tools/commands.h"
 
 void appliance::fail(const std::string& why) {
   std::fprintf(stderr, "kagami: %s\n", why.c_str());
-  throw CLI::RuntimeError(1);
+  throw CommandFailed();
 }

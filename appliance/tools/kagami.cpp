@@ -8,12 +8,14 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "appliance/tools/commands.h"
+#include "appliance/version/version.h"
 #include "ui-kms/film.h"
 
 namespace appliance {
@@ -88,7 +90,7 @@ int main(int argc, char** argv) {
       "work on the files of a run.",
       "kagami"};
   kagami.require_subcommand(1);
-  kagami.set_version_flag("--version", KAGAMI_VERSION);
+  kagami.set_version_flag("--version", std::string(appliance::version()));
   appliance::ControlPlace place;
   kagami.add_option("--bus", place.bus, "system, session or a D-Bus address")
       ->capture_default_str();
@@ -100,6 +102,10 @@ int main(int argc, char** argv) {
   appliance::addTraceCommand(kagami);
   appliance::addReportCommand(kagami);
   appliance::addFilmCommand(kagami);
-  CLI11_PARSE(kagami, argc, argv);
+  try {
+    CLI11_PARSE(kagami, argc, argv);
+  } catch (const appliance::CommandFailed& failed) {
+    return failed.status;
+  }
   return 0;
 }

@@ -122,7 +122,7 @@ void plan(const Options& options) {
   }
   std::printf("\n");
   for (const std::string& line : lightLines(site.light)) std::printf("%s\n", line.c_str());
-  if (judged && !possible) throw CLI::RuntimeError(1);
+  if (judged && !possible) throw CommandFailed();
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "appliance/tools/stall_periods.h"
+
 namespace appliance {
 namespace {
 
@@ -77,16 +79,29 @@ class WireIndex {
   std::map<CameraTrigger, std::vector<const SentFrame*>> frames_;
 };
 
-FrameCounts countFrames(const Trace& trace, rt::Timestamp from) {
+/// The frames that did not arrive of triggers that a stall may have cost.
+std::uint64_t lostInStalls(std::uint32_t cameras,
+                           const std::map<std::uint64_t, rt::Timestamp>& edges,
+                           const std::set<CameraTrigger>& arrived, const StallPeriods& stalls) {
+  std::uint64_t lost = 0;
+  for (const auto& [trigger, edge] : edges) {
+    if (!stalls.mayHaveCost(edge)) continue;
+    for (std::uint32_t camera = 0; camera < cameras; ++camera)
+      if (!arrived.contains({camera, trigger})) ++lost;
+  }
+  return lost;
+}
+
+FrameCounts countFrames(const Trace& trace, rt::Timestamp from, const StallPeriods& stalls) {
   FrameCounts counts;
-  std::set<std::uint64_t> triggers;
+  std::map<std::uint64_t, rt::Timestamp> triggers;  // and their edges
   rt::Timestamp first;
   rt::Timestamp last;
   for (const TriggerRecord& trigger : trace.triggers) {
     if (trigger.trigger_edge_before < from) continue;
     if (triggers.empty()) first = trigger.trigger_edge_before;
     last = trigger.trigger_edge_before;
-    triggers.insert(trigger.trigger);
+    triggers.emplace(trigger.trigger, trigger.trigger_edge_before);
   }
   counts.triggers = triggers.size();
   counts.frames_expected = counts.triggers * trace.run.cameras;
@@ -107,12 +122,15 @@ FrameCounts countFrames(const Trace& trace, rt::Timestamp from) {
         arrived.insert(key);
     } else if (frame.status != hal::FrameStatus::kAborted) {
       ++counts.frames_incomplete;
+      if (stalls.mayHaveCost(frame.first_packet)) ++counts.frames_incomplete_in_stalls;
       if (frame.trigger != 0) arrived.insert(key);
     }
   }
   counts.frames_received = received.size();
   counts.frames_lost =
       counts.frames_expected - std::min<std::uint64_t>(counts.frames_expected, arrived.size());
+  counts.frames_lost_in_stalls =
+      std::min(counts.frames_lost, lostInStalls(trace.run.cameras, triggers, arrived, stalls));
   return counts;
 }
 
@@ -246,8 +264,8 @@ std::vector<Bar> barsOf(const Report& report) {
   const auto fps = report.shown_fps > 0 ? std::optional(report.shown_fps) : std::nullopt;
   return {
       {"valid", report.valid ? 1.0 : 0.0, true, 1},
-      {"frames_lost after warm-up", frames(report.after_warm_up.frames_lost), false, 0},
-      {"frames_incomplete after warm-up", frames(report.after_warm_up.frames_incomplete), false, 0},
+      {"frames_lost after warm-up", frames(report.after_warm_up.lostByUs()), false, 0},
+      {"frames_incomplete after warm-up", frames(report.after_warm_up.incompleteByUs()), false, 0},
       {"shown_fps", fps, true, kShownShare * report.run.trigger_hz},
       {"last_packet_to_commit p50, ms", measured(stages.last_packet_to_commit, &Distribution::p50),
        false, 12},
@@ -272,8 +290,13 @@ Report computeReport(const ReportInput& input) {
   Report report;
   report.run = trace.run;
   report.warm_up_s = input.warm_up_s;
-  report.whole = countFrames(trace, {});
-  report.after_warm_up = countFrames(trace, warmUpEnd(trace, input.warm_up_s));
+  const double period_ns = trace.run.trigger_hz > 0 ? 1e9 / trace.run.trigger_hz : 0;
+  const StallPeriods stalls(trace.stalls, rt::Nanoseconds(std::llround(period_ns)));
+  report.stalls = {.count = stalls.count(),
+                   .longest_ms = static_cast<double>(stalls.longest().count()) / 1e6,
+                   .total_ms = static_cast<double>(stalls.total().count()) / 1e6};
+  report.whole = countFrames(trace, {}, stalls);
+  report.after_warm_up = countFrames(trace, warmUpEnd(trace, input.warm_up_s), stalls);
 
   const Index index(trace);
   std::optional<WireIndex> wire;

@@ -17,11 +17,26 @@ namespace appliance {
 struct FrameCounts {
   double seconds = 0;  ///< from the first edge to the last, and one period
   std::uint64_t triggers = 0;
-  std::uint64_t frames_expected = 0;      ///< triggers x cameras
-  std::uint64_t frames_received = 0;      ///< complete and attributed to a trigger
-  std::uint64_t frames_incomplete = 0;    ///< arrived, but not whole or not as configured
-  std::uint64_t frames_lost = 0;          ///< expected, but neither of these came
-  std::uint64_t frames_unattributed = 0;  ///< complete, but near no trigger edge: lost, too
+  std::uint64_t frames_expected = 0;              ///< triggers x cameras
+  std::uint64_t frames_received = 0;              ///< complete and attributed to a trigger
+  std::uint64_t frames_incomplete = 0;            ///< arrived, but not whole or not as configured
+  std::uint64_t frames_lost = 0;                  ///< expected, but neither of these came
+  std::uint64_t frames_unattributed = 0;          ///< complete, but near no trigger edge: lost, too
+  std::uint64_t frames_lost_in_stalls = 0;        ///< of frames_lost, while the machine stood still
+  std::uint64_t frames_incomplete_in_stalls = 0;  ///< of frames_incomplete, likewise
+
+  /// What the machine does not explain.
+  [[nodiscard]] std::uint64_t lostByUs() const { return frames_lost - frames_lost_in_stalls; }
+  [[nodiscard]] std::uint64_t incompleteByUs() const {
+    return frames_incomplete - frames_incomplete_in_stalls;
+  }
+};
+
+/// How often and for how long the machine itself stood still.
+struct StallFigures {
+  std::uint64_t count = 0;
+  double longest_ms = 0;
+  double total_ms = 0;
 };
 
 /// Where the milliseconds go. docs/trace.md says what each is measured between.
@@ -59,6 +74,7 @@ struct Report {
   RunRecord run;
   FrameCounts whole;
   FrameCounts after_warm_up;
+  StallFigures stalls;
   double warm_up_s = 0;
   bool valid = false;
   std::vector<std::string> invalid_reasons;

@@ -23,7 +23,9 @@ ordered_json toObject(const FrameCounts& counts) {
           {"frames_received", counts.frames_received},
           {"frames_lost", counts.frames_lost},
           {"frames_incomplete", counts.frames_incomplete},
-          {"frames_unattributed", counts.frames_unattributed}};
+          {"frames_unattributed", counts.frames_unattributed},
+          {"frames_lost_in_stalls", counts.frames_lost_in_stalls},
+          {"frames_incomplete_in_stalls", counts.frames_incomplete_in_stalls}};
 }
 
 ordered_json toObject(const StageTimes& stages) {
@@ -109,7 +111,8 @@ ordered_json threadsOf(const RunRecord& run) {
 
 std::string toJson(const Report& report) {
   const RunRecord& run = report.run;
-  ordered_json object = {{"cameras", run.cameras},
+  ordered_json object = {{"version", run.version},
+                         {"cameras", run.cameras},
                          {"width", run.width_px},
                          {"height", run.height_px},
                          {"pixel_format", run.pixel_format},
@@ -119,6 +122,10 @@ std::string toJson(const Report& report) {
   after["warm_up_s"] = report.warm_up_s;
   object.update(
       ordered_json{{"after_warm_up", std::move(after)},
+                   {"stalls",
+                    {{"count", report.stalls.count},
+                     {"longest_ms", report.stalls.longest_ms},
+                     {"total_ms", report.stalls.total_ms}}},
                    {"valid", report.valid},
                    {"invalid_reasons", report.invalid_reasons},
                    {"frames_misattributed", orNull(report.frames_misattributed)},

@@ -39,6 +39,12 @@ std::string heading(const Report& report) {
                " lost, %" PRIu64 " incomplete, %" PRIu64 " unattributed\n",
                report.whole.frames_expected, report.whole.frames_received, report.whole.frames_lost,
                report.whole.frames_incomplete, report.whole.frames_unattributed);
+  if (report.stalls.count > 0)
+    text += line("this PC stood still %" PRIu64
+                 " times, for %.1f ms at most (firmware or host): %" PRIu64
+                 " frames lost and %" PRIu64 " incomplete meanwhile, not judged\n",
+                 report.stalls.count, report.stalls.longest_ms, after.frames_lost_in_stalls,
+                 after.frames_incomplete_in_stalls);
   text += line("shown: %.2f frame sets a second; %" PRIu64 " pictures, %" PRIu64 " repeated\n",
                report.shown_fps, report.pictures, report.pictures_repeated);
   text += line("CPU: kagamid %.1f s", report.cpu_seconds_kagamid);

@@ -84,6 +84,13 @@ void visitFields(R& record, Visitor&& visit) {
   visit("unlocks", record.unlocks);
 }
 
+template <IsRecord<StallRecord> R, class Visitor>
+void visitFields(R& record, Visitor&& visit) {
+  visit("cpu", record.cpu);
+  visit("begin_ns", record.begin);
+  visit("end_ns", record.end);
+}
+
 template <IsRecord<TracedThread> R, class Visitor>
 void visitFields(R& record, Visitor&& visit) {
   visit("name", record.name);
@@ -95,6 +102,7 @@ void visitFields(R& record, Visitor&& visit) {
 
 template <IsRecord<RunRecord> R, class Visitor>
 void visitFields(R& record, Visitor&& visit) {
+  visit("version", record.version);
   visit("cameras", record.cameras);
   visit("width_px", record.width_px);
   visit("height_px", record.height_px);

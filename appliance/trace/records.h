@@ -88,9 +88,16 @@ struct GenlockRecord {
   std::uint64_t unlocks = 0;        ///< so far
 };
 
+/// The machine itself stood still, as the probe of one CPU saw it; by main.
+struct StallRecord {
+  std::uint32_t cpu = 0;
+  rt::Timestamp begin;
+  rt::Timestamp end;
+};
+
 /// What crosses from a real-time thread to the trace writer.
 using TraceRecord = std::variant<TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord,
-                                 LoopbackRecord, GenlockRecord>;
+                                 LoopbackRecord, GenlockRecord, StallRecord>;
 static_assert(std::is_trivially_copyable_v<TraceRecord>, "records cross threads by copy");
 
 /// What a named thread asked for and what the kernel granted.
@@ -104,6 +111,7 @@ struct TracedThread {
 
 /// The first line: what ran, known before the first trigger.
 struct RunRecord {
+  std::string version;  ///< which sources ran; empty in a trace of before there was this field
   std::uint32_t cameras = 0;
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;

@@ -41,6 +41,8 @@ template <>
 constexpr const char* kKind<LoopbackRecord> = "loopback";
 template <>
 constexpr const char* kKind<GenlockRecord> = "genlock";
+template <>
+constexpr const char* kKind<StallRecord> = "stall";
 
 /// Appends the fields of the frequent records; they hold no text of the world, so nothing is
 /// escaped.
@@ -103,13 +105,16 @@ struct JsonReader {
   const json& object;
   std::string& error;
 
+  /// Fields that older traces of the same format do not have.
+  static bool isNew(std::string_view name) { return name == "version"; }
+
   template <class T>
   void operator()(const char* name, T& value) {
     if (!error.empty()) return;
     const auto found = object.find(name);
-    if (found == object.end())
+    if (found == object.end() && !isNew(name))
       error = std::string("no field '") + name + "'";
-    else if (!take(*found, value))
+    else if (found != object.end() && !take(*found, value))
       error = std::string("field '") + name + "' has the wrong type or value";
   }
 
@@ -223,6 +228,7 @@ std::string take(TraceLine line, bool first, Trace& trace) {
                         [&](FlipRecord& flip) { trace.flips.push_back(flip); },
                         [&](LoopbackRecord& edge) { trace.loopbacks.push_back(edge); },
                         [&](GenlockRecord& genlock) { trace.genlocks.push_back(genlock); },
+                        [&](StallRecord& stall) { trace.stalls.push_back(stall); },
                         [&](SummaryRecord& summary) { trace.summary = summary; }},
              line);
   return {};
@@ -275,6 +281,7 @@ std::expected<TraceLine, std::string> parseTraceLine(std::string_view line) {
   if (kind == kKind<FlipRecord>) return readAs<FlipRecord>(object);
   if (kind == kKind<LoopbackRecord>) return readAs<LoopbackRecord>(object);
   if (kind == kKind<GenlockRecord>) return readAs<GenlockRecord>(object);
+  if (kind == kKind<StallRecord>) return readAs<StallRecord>(object);
   if (kind == "summary") return readAs<SummaryRecord>(object);
   return std::unexpected("unknown record '" + rt::printable(kind) + "'");
 }

@@ -26,12 +26,14 @@ struct Trace {
   std::vector<FlipRecord> flips;
   std::vector<LoopbackRecord> loopbacks;
   std::vector<GenlockRecord> genlocks;
+  std::vector<StallRecord> stalls;
   std::optional<SummaryRecord> summary;  ///< nothing: the daemon did not come to its end
 };
 
 /// Any line of a trace.
-using TraceLine = std::variant<RunRecord, TriggerRecord, FrameRecord, SetRecord, PictureRecord,
-                               FlipRecord, LoopbackRecord, GenlockRecord, SummaryRecord>;
+using TraceLine =
+    std::variant<RunRecord, TriggerRecord, FrameRecord, SetRecord, PictureRecord, FlipRecord,
+                 LoopbackRecord, GenlockRecord, StallRecord, SummaryRecord>;
 
 /// One line, without its newline. Errors: what is wrong with it.
 [[nodiscard]] std::expected<TraceLine, std::string> parseTraceLine(std::string_view line);

@@ -36,10 +36,11 @@ bool measure(const bench::ReceptionSetup& setup, Curve& curve, std::size_t at,
     return false;
   }
   if (!result->valid()) {
-    std::printf("    %s, %zu cameras: a round lost %.1f %% of its frames and does not count\n",
+    std::printf("    %s, %zu cameras: a round lost %.1f %% of its frames and does not count%s%s\n",
                 curve.name.c_str(), setup.cameras.size(),
                 100 - 100.0 * static_cast<double>(result->frames) /
-                          static_cast<double>(std::max<std::uint64_t>(result->expected, 1)));
+                          static_cast<double>(std::max<std::uint64_t>(result->expected, 1)),
+                result->stalls.empty() ? "" : ": ", result->stalls.c_str());
     return true;
   }
   curve.cpu[at].push_back(result->cpu_s / result->wall_s);

@@ -49,6 +49,9 @@ bool runRounds(const bench::EmulatedRig& rig, const Load& load, int rounds,
       }
       entry.expected += result->expected;
       entry.lost += result->expected - std::min(result->frames, result->expected);
+      if (result->frames < result->expected && !result->stalls.empty()) {
+        std::printf("    %s lost frames, but %s\n", entry.name.c_str(), result->stalls.c_str());
+      }
       if (result->bytes == 0 || !result->valid()) continue;
       entry.cpu_s_per_gb.push_back(result->cpu_s * 1e9 / static_cast<double>(result->bytes));
     }

@@ -328,7 +328,8 @@ tell_of_machine() {  # PROCESSOR-TIME-BEFORE EMULATOR-STATISTICS
     }'
 }
 
-# What makes a run bad, a line each; nothing for a good one.
+# What makes a run bad, a line each; nothing for a good one. What was lost while this PC stood still is
+# no fault of the build; the table says how much that was.
 faults_of() {  # REPORT
   awk '
     function number() { sub(/.*: */, ""); sub(/,$/, ""); return $0 + 0 }
@@ -336,8 +337,10 @@ faults_of() {  # REPORT
     /^  "after_warm_up"/ { judged = 1 }
     /^  }/ { judged = 0 }
     judged && /"frames_expected"/ { expected = number() }
-    judged && /"frames_lost"/ { lost = number() }
-    judged && /"frames_incomplete"/ { incomplete = number() }
+    judged && /"frames_lost"/ { lost += number() }
+    judged && /"frames_incomplete"/ { incomplete += number() }
+    judged && /"frames_lost_in_stalls"/ { lost -= number() }
+    judged && /"frames_incomplete_in_stalls"/ { incomplete -= number() }
     END {
       if (!valid) print "the run is not valid, the table says why"
       if (expected == 0) print "no frame was expected after the warm-up: run longer (--seconds)"

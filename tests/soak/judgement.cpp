@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "appliance/tools/stall_periods.h"
+
 namespace soak {
 namespace {
 
@@ -39,8 +41,9 @@ std::uint64_t FaultOutcome::lostFrames() const {
 }
 
 Judgement judge(std::span<const LostFrame> lost, std::span<const Fault> faults,
-                rt::Nanoseconds period) {
+                std::span<const appliance::StallRecord> stalls, rt::Nanoseconds period) {
   Judgement judgement;
+  const appliance::StallPeriods standstills(stalls, period);
   std::vector<std::vector<std::size_t>> of_camera;
   for (const Fault& fault : faults) {
     if (fault.camera >= of_camera.size()) of_camera.resize(fault.camera + 1);
@@ -55,7 +58,8 @@ Judgement judge(std::span<const LostFrame> lost, std::span<const Fault> faults,
       }
     }
     if (explained == nullptr) {
-      const bool stood_still = withoutStandstill(frame.cause) != frame.cause;
+      const bool stood_still =
+          withoutStandstill(frame.cause) != frame.cause || standstills.mayHaveCost(frame.edge);
       (stood_still ? judgement.stood_still : judgement.unexplained).push_back(frame);
       continue;
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "appliance/trace/records.h"
 #include "tests/soak/faults.h"
 #include "tests/soak/loss_account.h"
 
@@ -30,7 +31,8 @@ struct FaultOutcome {
 
 struct Judgement {
   std::vector<FaultOutcome> faults;
-  std::vector<LostFrame> stood_still;  ///< by late edges or held up, on no faulty camera
+  /// On no faulty camera, by late edges, held up, or while the box's probes saw a stall.
+  std::vector<LostFrame> stood_still;
   std::vector<LostFrame> unexplained;
 };
 
@@ -38,7 +40,9 @@ struct Judgement {
 /// may lose frames by that cause, and that has not lost its most frames already. Pure.
 ///
 /// @p period: between triggers. A frame on its way when the fault began is the fault's.
+/// @p stalls: when the machine itself stood still.
 [[nodiscard]] Judgement judge(std::span<const LostFrame> lost, std::span<const Fault> faults,
+                              std::span<const appliance::StallRecord> stalls,
                               rt::Nanoseconds period);
 
 /// One line per fault, instants in seconds since @p start.

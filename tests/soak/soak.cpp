@@ -18,6 +18,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "appliance/tools/stall_periods.h"
 #include "appliance/trace/trace_file.h"
 #include "tests/soak/box.h"
 #include "tests/soak/judgement.h"
@@ -54,6 +55,7 @@ struct Records {
   Records(std::uint32_t cameras, rt::Nanoseconds period) : account(cameras, period) {}
   std::mutex mutex;
   LossAccount account;
+  std::vector<appliance::StallRecord> stalls;  // when this machine stood still
   std::optional<appliance::SummaryRecord> summary;
   std::string unreadable;  // the first line that could not be read
 };
@@ -67,6 +69,8 @@ void takeTraceLine(Records& records, std::string_view line) {
     records.account.triggerFired(*trigger);
   } else if (const auto* frame = std::get_if<appliance::FrameRecord>(&*record)) {
     records.account.frameArrived(*frame);
+  } else if (const auto* stall = std::get_if<appliance::StallRecord>(&*record)) {
+    records.stalls.push_back(*stall);
   } else if (const auto* summary = std::get_if<appliance::SummaryRecord>(&*record)) {
     records.summary = *summary;
   }
@@ -227,7 +231,7 @@ void Run::lookAtStatus(rt::Timestamp now) {
 
 Judgement Run::judgedSoFar() {
   const std::scoped_lock lock(records_.mutex);
-  return judge(records_.account.lost(), faults_, period_);
+  return judge(records_.account.lost(), faults_, records_.stalls, period_);
 }
 
 void Run::tellProgress(rt::Timestamp now) {
@@ -263,14 +267,17 @@ std::vector<std::string> Run::conclude() {
   const LossAccount& account = records_.account;
   std::printf(
       "%llu triggers judged, %llu frames stored, %zu lost, %zu of them unexplained; %llu lost in "
-      "the "
-      "first %lld s, not judged\n",
+      "the first %lld s, not judged\n",
       static_cast<unsigned long long>(account.triggersJudged()),
       static_cast<unsigned long long>(account.framesStored()), account.lost().size(),
       judgement.unexplained.size(), static_cast<unsigned long long>(account.lostWhileSettling()),
       static_cast<long long>(LossAccount::kSettling / 1s));
+  const appliance::StallPeriods stalls(records_.stalls, period_);
+  if (stalls.count() > 0)
+    std::printf("this PC stood still %zu times, for %lld ms at most (firmware or host)\n",
+                stalls.count(), static_cast<long long>(stalls.longest() / 1ms));
   if (!judgement.stood_still.empty())
-    std::printf("%zu of them because this machine stood still: a late edge, or sending held up\n",
+    std::printf("%zu frames lost because this PC stood still: counted apart, not judged\n",
                 judgement.stood_still.size());
   if (!growth)
     std::printf("memory is not judged: that takes every fault once (%zu x %g s) and %lld s more\n",

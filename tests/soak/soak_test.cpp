@@ -120,7 +120,7 @@ TEST(LossAccount, NamesAFrameThatTheEmulatorItselfHeldUp) {
   ASSERT_THAT(account.lost(), SizeIs(4));
   EXPECT_EQ(account.lost()[0].cause, LossCause::kHeldUp);
   EXPECT_EQ(account.lost()[2].cause, LossCause::kIncomplete);
-  const Judgement judgement = judge(account.lost(), {}, kPeriod);
+  const Judgement judgement = judge(account.lost(), {}, {}, kPeriod);
   EXPECT_THAT(judgement.stood_still, SizeIs(2));
   EXPECT_THAT(judgement.unexplained, SizeIs(2));
 }
@@ -197,7 +197,7 @@ LostFrame lostAt(rt::Nanoseconds after, LossCause cause = LossCause::kNotSent,
 Judgement judgePulled(std::vector<LostFrame> lost) {
   const std::vector<Fault> faults = {
       {.kind = &kPulled, .camera = 6, .from = kStart + 10s, .until = kStart + 12s}};
-  return judge(lost, faults, kPeriod);
+  return judge(lost, faults, {}, kPeriod);
 }
 
 TEST(Judgement, ExplainsALossByAFaultOnItsCameraAtItsTime) {
@@ -219,9 +219,22 @@ TEST(Judgement, GrantsAFaultNoMoreFramesThanItMayLose) {
   const std::vector<Fault> faults = {
       {.kind = &kIgnores, .camera = 6, .from = kStart, .until = kStart + 1s}};
   const std::vector<LostFrame> lost = {lostAt(10ms), lostAt(35ms), lostAt(60ms)};
-  const Judgement judgement = judge(lost, faults, kPeriod);
+  const Judgement judgement = judge(lost, faults, {}, kPeriod);
   ASSERT_THAT(judgement.unexplained, SizeIs(1));
   EXPECT_EQ(judgement.unexplained[0].edge, kStart + 60ms);
+}
+
+TEST(Judgement, CountsALossWhileTheMachineStoodStillApart) {
+  const std::vector<appliance::StallRecord> stalls = {
+      {.cpu = 1, .begin = kStart + 1s, .end = kStart + 1040ms}};
+  const std::vector<LostFrame> lost = {
+      lostAt(900ms, LossCause::kNeverCame), lostAt(1s, LossCause::kNeverCame),
+      lostAt(1060ms, LossCause::kIncomplete), lostAt(1100ms, LossCause::kIncomplete)};
+  const Judgement judgement = judge(lost, {}, stalls, kPeriod);
+  EXPECT_THAT(judgement.stood_still, SizeIs(2));
+  ASSERT_THAT(judgement.unexplained, SizeIs(2));
+  EXPECT_EQ(judgement.unexplained[0].edge, kStart + 900ms);
+  EXPECT_EQ(judgement.unexplained[1].edge, kStart + 1100ms);
 }
 
 TEST(Judgement, TellsAPersonWhichFrame) {

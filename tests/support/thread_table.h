@@ -31,7 +31,7 @@ struct TableRow {
 /// The table's name of a task: recv01, recv02, ... are one row; a task that a library made, and
 /// main itself, bear the program's name or the library's.
 [[nodiscard]] inline std::string tableName(const std::string& task) {
-  for (const char* family : {"recv", "watch", "draw"}) {
+  for (const char* family : {"recv", "watch", "draw", "probe"}) {
     if (task.starts_with(family)) return family;
   }
   for (const char* library : {"kagamid", "gmain", "gdbus", "arv_gv_heartbea"}) {

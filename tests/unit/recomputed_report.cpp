@@ -118,10 +118,49 @@ const Sent* sentOf(const Wire& wire, const json& frame) {
   return best;
 }
 
+/// Whether any one probe saw a stall around the instant. Stalls are not joined here.
+bool stoodStill(const Run& run, std::int64_t at_ns) {
+  const auto stalls = run.lines.find("stall");
+  if (stalls == run.lines.end()) return false;
+  const auto period_ns =
+      static_cast<std::int64_t>(std::llround(1e9 / run.head["trigger_hz"].get<double>()));
+  return std::ranges::any_of(stalls->second, [&](const json& stall) {
+    return at_ns >= ns(stall, "begin") - 2 * period_ns && at_ns <= ns(stall, "end") + period_ns;
+  });
+}
+
+/// Sweeps over the begins and ends: the machine stands still while any probe says so.
+json stallsOf(const Run& run) {
+  std::vector<std::pair<std::int64_t, int>> ends;
+  if (const auto stalls = run.lines.find("stall"); stalls != run.lines.end()) {
+    for (const json& stall : stalls->second) {
+      ends.emplace_back(ns(stall, "begin"), -1);  // before an end at the same instant
+      ends.emplace_back(ns(stall, "end"), 1);
+    }
+  }
+  std::ranges::sort(ends);
+  int open = 0;
+  std::int64_t count = 0, begin_ns = 0, longest_ns = 0, total_ns = 0;
+  for (const auto& [at_ns, step] : ends) {
+    if (open == 0) {
+      ++count;
+      begin_ns = at_ns;
+    }
+    open -= step;
+    if (open > 0) continue;
+    total_ns += at_ns - begin_ns;
+    longest_ns = std::max(longest_ns, at_ns - begin_ns);
+  }
+  return {{"count", count},
+          {"longest_ms", static_cast<double>(longest_ns) * 1e-6},
+          {"total_ms", static_cast<double>(total_ns) * 1e-6}};
+}
+
 json countsFrom(const Run& run, std::int64_t from_ns) {
   std::map<std::pair<std::int64_t, std::int64_t>, std::set<std::string>> seen;
   std::int64_t incomplete = 0;
   std::int64_t unattributed = 0;
+  std::int64_t incomplete_in_stalls = 0;
   const auto frames = run.lines.find("frame");
   for (const json& frame : frames == run.lines.end() ? Lines{} : frames->second) {
     const auto trigger = frame["trigger"].get<std::int64_t>();
@@ -131,6 +170,7 @@ json countsFrom(const Run& run, std::int64_t from_ns) {
     const auto status = frame["status"].get<std::string>();
     if (!in || status == "aborted") continue;
     if (status != "complete") ++incomplete;
+    if (status != "complete" && stoodStill(run, ns(frame, "first_packet"))) ++incomplete_in_stalls;
     if (trigger != 0)
       seen[{frame["camera"].get<std::int64_t>(), trigger}].insert(status);
     else if (status == "complete")
@@ -139,8 +179,11 @@ json countsFrom(const Run& run, std::int64_t from_ns) {
   std::int64_t triggers = 0;
   std::int64_t first_ns = 0;
   std::int64_t last_ns = 0;
+  std::int64_t lost_in_stalls = 0;
   for (const auto& [trigger, edge_ns] : run.edge) {
     if (edge_ns < from_ns) continue;
+    for (std::int64_t camera = 0; camera < run.head["cameras"].get<std::int64_t>(); ++camera)
+      if (!seen.contains({camera, trigger}) && stoodStill(run, edge_ns)) ++lost_in_stalls;
     if (triggers++ == 0) first_ns = edge_ns;
     last_ns = edge_ns;
   }
@@ -155,7 +198,9 @@ json countsFrom(const Run& run, std::int64_t from_ns) {
           {"frames_received", received},
           {"frames_incomplete", incomplete},
           {"frames_lost", expected - static_cast<std::int64_t>(seen.size())},
-          {"frames_unattributed", unattributed}};
+          {"frames_unattributed", unattributed},
+          {"frames_lost_in_stalls", lost_in_stalls},
+          {"frames_incomplete_in_stalls", incomplete_in_stalls}};
 }
 
 }  // namespace
@@ -164,6 +209,7 @@ json recomputedReport(std::istream& trace, std::istream* wire_log, double warm_u
   Run run = readRun(trace);
   const Wire wire = wire_log != nullptr ? readWire(*wire_log) : Wire{};
   json out = countsFrom(run, 0);
+  out["stalls"] = stallsOf(run);
   const std::int64_t begin_ns = run.edge.empty() ? 0 : run.edge.begin()->second;
   out["after_warm_up"] = countsFrom(run, begin_ns + std::llround(warm_up_s * 1e9));
 

@@ -116,6 +116,9 @@ class RunWriter {
   void flip(std::int64_t id, std::int64_t flip_ns) {
     add({{"record", "flip"}, {"picture_id", id}, {"page_flip_ns", flip_ns}, {"vblank", id}});
   }
+  void stall(int cpu, std::int64_t begin_ns, std::int64_t end_ns) {
+    add({{"record", "stall"}, {"cpu", cpu}, {"begin_ns", begin_ns}, {"end_ns", end_ns}});
+  }
   void summary(bool clean = true, int dropped = 0) {
     add({{"record", "summary"},
          {"clean_stop", clean},
@@ -167,6 +170,11 @@ RunFiles eventfulRun() {
     if (t % 10 == 0 && t >= 20 && t != 60)
       run.genlock(t, "locked", "none", 20'000 - upTo(40'000), 25'000'000 + upTo(200'000), t > 60);
     if (t == 60) run.genlock(t, "acquiring", "phase_lost", 700'000, 25'000'000, 1);
+    if (t % 40 == 0) {  // two processors, one after the other; the first again a little later
+      run.stall(0, edge_ns + upTo(5'000'000), edge_ns + 60'000'000);
+      run.stall(1, edge_ns + 40'000'000, edge_ns + 90'000'000 + upTo(5'000'000));
+      run.stall(0, edge_ns + 200'000'000, edge_ns + 210'000'000);
+    }
     // A lost edge, and one near no trigger: neither is a delay.
     if (t % 50 != 0) run.loopback(t % 50 == 1 ? 0 : t, edge_ns + 3000 + upTo(9000));
     for (int camera = 0; camera < kCameras; ++camera) {
@@ -219,6 +227,11 @@ TEST_P(RecomputedFigures, AreTheReportsFigures) {
   EXPECT_GT(report["frames_incomplete"], 0);
   EXPECT_GT(report["frames_unattributed"], 0);
   EXPECT_LT(report["after_warm_up"]["frames_lost"], report["frames_lost"]);
+  EXPECT_EQ(report["stalls"]["count"], 10);
+  for (const char* counted : {"frames_lost", "frames_incomplete"}) {
+    EXPECT_GT(report[std::string(counted) + "_in_stalls"], 0);
+    EXPECT_LT(report[std::string(counted) + "_in_stalls"], report[counted]);
+  }
   EXPECT_GT(report["pictures_repeated"], 0);
   for (const auto& [name, stage] : report["stages_ms"].items())
     EXPECT_GT(stage["count"], 50) << name;
@@ -301,6 +314,32 @@ TEST(Report, MarksTheBarsByTheFigures) {
   EXPECT_THAT(table, HasSubstr("FAIL  frames_lost after warm-up"));
   EXPECT_THAT(table, HasSubstr("PASS  shown_fps"));
   EXPECT_THAT(table, HasSubstr("visible delay about 120"));
+}
+
+TEST(Report, DoesNotHoldLossesWithinAStallAgainstTheBars) {
+  RunWriter run = paperRun();  // camera 2 lost the frame of trigger 3
+  const std::int64_t edge_ns = kStart_ns + 3 * kPeriod_ns;
+  run.stall(0, edge_ns + 5'000'000, edge_ns + 30'000'000);
+  run.stall(1, edge_ns + 20'000'000, edge_ns + 45'000'000);
+  run.summary();
+  const Report report = reportOf(run.files(), true, 0);
+  EXPECT_EQ(report.stalls.count, 1u);
+  EXPECT_DOUBLE_EQ(report.stalls.longest_ms, 40);
+  EXPECT_EQ(report.whole.frames_lost, 1u);
+  EXPECT_EQ(report.whole.frames_lost_in_stalls, 1u);
+  EXPECT_THAT(appliance::toTable(report), HasSubstr("PASS  frames_lost after warm-up"));
+  EXPECT_THAT(appliance::toTable(report),
+              HasSubstr("this PC stood still 1 times, for 40.0 ms at most (firmware or host): "
+                        "1 frames lost and 0 incomplete meanwhile, not judged"));
+}
+
+TEST(Report, ExcusesNoLossFarFromAStall) {
+  RunWriter run = paperRun();
+  const std::int64_t edge_ns = kStart_ns + 3 * kPeriod_ns;
+  run.stall(0, edge_ns + 2 * kPeriod_ns + 1, edge_ns + 5 * kPeriod_ns);
+  run.stall(0, edge_ns - 3 * kPeriod_ns, edge_ns - kPeriod_ns - 1);
+  run.summary();
+  EXPECT_EQ(reportOf(run.files(), true, 0).whole.frames_lost_in_stalls, 0u);
 }
 
 TEST(Report, SaysWhyARunIsNotValid) {

@@ -42,7 +42,8 @@ std::string lineOf(const appliance::TraceRecord& record) {
 }
 
 RunRecord someRun() {
-  return {.cameras = 20,
+  return {.version = "0.1.0 (a commit)",
+          .cameras = 20,
           .width_px = 1280,
           .height_px = 1024,
           .pixel_format = "BayerRG8",
@@ -107,6 +108,7 @@ TEST(TraceFile, ReadsBackWhatWasWritten) {
                                             .lead = rt::Nanoseconds(16),
                                             .vblank_period = rt::Nanoseconds(17),
                                             .unlocks = 18});
+  appendLine(text, appliance::StallRecord{3, fromNs(19), fromNs(20)});
   SummaryRecord summary;
   summary.clean_stop = true;
   summary.cpu_seconds = 12.25;
@@ -134,8 +136,18 @@ TEST(TraceFile, ReadsBackWhatWasWritten) {
   appendLine(again, trace->flips.at(0));
   appendLine(again, trace->loopbacks.at(0));
   appendLine(again, trace->genlocks.at(0));
+  appendLine(again, trace->stalls.at(0));
   EXPECT_EQ(trace->genlocks.at(0).phase_error, rt::Nanoseconds(-15));
   EXPECT_EQ(again + appliance::toLine(*trace->summary), text);
+}
+
+TEST(TraceFile, ReadsARunOfBeforeItNamedItsVersion) {
+  auto run = nlohmann::json::parse(appliance::toLine(someRun()));
+  run.erase("version");
+  const auto trace = read(run.dump() + "\n");
+  ASSERT_TRUE(trace) << trace.error();
+  EXPECT_EQ(trace->run.version, "");
+  EXPECT_EQ(trace->run.cameras, 20u);
 }
 
 TEST(TraceFile, EveryInstantOfARecordHasItsOwnName) {

@@ -7,6 +7,8 @@
 #include <sys/resource.h>
 
 #include "appliance/capture/trigger_loop.h"
+#include "appliance/machine/machine_probe.h"
+#include "appliance/machine/stall_log.h"
 #include "hal/emulated/trigger_line.h"
 
 namespace bench {
@@ -89,14 +91,20 @@ std::expected<RoundResult, std::string> runRound(const ReceptionSetup& setup,
   if (!trigger) return std::unexpected("the trigger thread does not start");
 
   std::this_thread::sleep_for(kWarmUpTriggers * setup.period);
+  appliance::MachineProbe probe(setup.period / 5);
+  (void)probe.start();  // without the right to it nothing is said of the machine
   const Reading before = readBetweenTriggers(**receiver, board->edges, setup.period);
   std::this_thread::sleep_for(length);
   const Reading after = readBetweenTriggers(**receiver, board->edges, setup.period);
+  probe.stop();
   trigger->requestStop();
   trigger->join();
   std::this_thread::sleep_for(2 * setup.period);  // frames on the wire belong to this round
 
   RoundResult result;
+  appliance::StallLog stalls;
+  while (const auto stall = probe.tryPop()) stalls.take(*stall);
+  result.stalls = stalls.text(rt::now());
   result.cpu_s = after.cpu_s - before.cpu_s;
   result.wall_s = std::chrono::duration<double>(after.at - before.at).count();
   result.frames = after.frames - before.frames;

@@ -42,6 +42,7 @@ struct RoundResult {
   std::uint64_t frames = 0;
   std::uint64_t expected = 0;  ///< triggers times cameras
   std::uint64_t bytes = 0;     ///< of the frames
+  std::string stalls;          ///< whether the machine itself stood still; empty: it did not
 
   /// A contestant that loses frames also saves their cost: such a round compares nothing.
   [[nodiscard]] bool valid() const { return frames * 100 >= expected * 98; }
