@@ -1,11 +1,13 @@
 #include "appliance/box/box.h"
 
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "appliance/box/memory.h"
 #include "appliance/box/run_facts.h"
 #include "appliance/metrics/metrics_text.h"
+#include "appliance/version/version.h"
 
 namespace appliance {
 
@@ -80,7 +82,19 @@ std::expected<void, std::string> Box::makeParts(std::span<const PartEntry> parts
   return {};
 }
 
+void Box::countLosses() {
+  if (trace_) {
+    trace_metrics_ = metrics_.group("trace");
+    trace_metrics_.addCount("dropped", [this] { return trace_->dropped(); });
+  }
+  command_metrics_ = metrics_.group("commands");
+  for (const auto& sender : commands_.senders())
+    command_metrics_.addCount(sender->name() + "_refused",
+                              [one = sender.get()] { return one->refused(); });
+}
+
 std::expected<void, std::string> Box::run() {
+  countLosses();
   if (auto started = parts_.start(); !started) return started;
   if (trace_) trace_->begin(runRecord(*shared_, status()));
   return {};
@@ -143,6 +157,7 @@ std::vector<BusObject> Box::busObjects() const {
 Status Box::status() const {
   Status status{.degraded = remarks_.list()};
   parts_.report(status);
+  status.sections.push_back({.key = "version", .line = std::string(version())});
   StatusSection commands{.key = "commands", .line = ""};
   for (const auto& sender : commands_.senders())
     commands.values.push_back(

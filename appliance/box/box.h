@@ -65,6 +65,7 @@ class Box final : public ControlSink, public StatusSource {
   Box(const Site& site, const BoxParts& parts);
   [[nodiscard]] std::expected<void, std::string> makeShared(const BoxParts& parts);
   [[nodiscard]] std::expected<void, std::string> makeParts(std::span<const PartEntry> parts);
+  void countLosses();
   [[nodiscard]] std::expected<void, std::string> run();
   [[nodiscard]] rt::Timestamp shownExposure() const;
   void endWithout(const std::vector<std::string>& hung);
@@ -87,6 +88,8 @@ class Box final : public ControlSink, public StatusSource {
   std::unique_ptr<TraceWriter> trace_;  // none: not traced
   std::unique_ptr<const Shared> shared_;
   PartList parts_;
+  MetricsGroup trace_metrics_;
+  MetricsGroup command_metrics_;
   JobRegistry jobs_;  // ends first: a work uses the parts
   bool stopped_ = false;
 };

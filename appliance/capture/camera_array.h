@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <expected>
 #include <memory>
 #include <string>
@@ -40,6 +41,14 @@ class CameraArray {
   [[nodiscard]] std::vector<Remark> remarks() const;
   /// The sums over all cameras.
   [[nodiscard]] CollectorCounts counts() const;
+  [[nodiscard]] std::size_t size() const { return collectors_.size(); }
+  /// Of one camera, from 0.
+  [[nodiscard]] CollectorCounts counts(std::size_t camera) const {
+    return collectors_[camera]->counts();
+  }
+  [[nodiscard]] const PacketCounts& packets(std::size_t camera) const {
+    return supervisors_[camera]->packets();
+  }
 
  private:
   const Rig& rig_;

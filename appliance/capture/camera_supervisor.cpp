@@ -62,7 +62,9 @@ std::vector<std::string> CameraSupervisor::remarks() const {
 std::vector<std::string> CameraSupervisor::remarksNow() {
   if (!camera_) return {};
   std::vector<std::string> remarks = camera_->remarks();
-  if (large_packet_loss_.update(camera_->statistics())) {
+  const hal::CameraStatistics counted = camera_->statistics();
+  packets_.take(counted);
+  if (large_packet_loss_.update(counted)) {
     remarks.push_back(access_.name + ": " + LargePacketLoss::kReason);
   }
   return remarks;

@@ -17,6 +17,7 @@
 #include "appliance/capture/edge_board.h"
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/large_packet_loss.h"
+#include "appliance/capture/packet_counts.h"
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "rt/thread.h"
@@ -69,6 +70,7 @@ class CameraSupervisor {
   [[nodiscard]] CameraHealth health() const;
   /// What is not as it should be although it streams, or would: one line each. Any thread.
   [[nodiscard]] std::vector<std::string> remarks() const;
+  [[nodiscard]] const PacketCounts& packets() const { return packets_; }
   /// Since its last stored frame; nothing before the first.
   [[nodiscard]] std::optional<rt::Nanoseconds> silentFor(rt::Timestamp now) const;
 
@@ -86,6 +88,7 @@ class CameraSupervisor {
   CameraMachine machine_;                // the thread's
   std::unique_ptr<hal::Camera> camera_;  // likewise
   LargePacketLoss large_packet_loss_;    // likewise
+  PacketCounts packets_;                 // the thread's to write
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -1,6 +1,10 @@
 #include "appliance/capture/cameras_part.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
 
 #include "appliance/box/shared.h"
 #include "appliance/capture/camera_array.h"
@@ -13,7 +17,9 @@ class CamerasPart final : public Part {
  public:
   explicit CamerasPart(const Shared& shared)
       : shared_(shared),
-        cameras_(shared.config, shared.rig, shared.history, shared.board, shared.trace) {}
+        cameras_(shared.config, shared.rig, shared.history, shared.board, shared.trace) {
+    for (std::size_t i = 0; i < cameras_.size(); ++i) metrics_.push_back(metricsOf(i));
+  }
 
   [[nodiscard]] std::string_view name() const override { return "cameras"; }
 
@@ -38,8 +44,30 @@ class CamerasPart final : public Part {
   }
 
  private:
+  /// Cameras count from 1 for people: camera01.
+  [[nodiscard]] MetricsGroup metricsOf(std::size_t camera) const {
+    char name[16];
+    std::snprintf(name, sizeof name, "camera%02zu", (camera + 1) % 100);
+    MetricsGroup group = shared_.metrics.group(name);
+    const auto count = [&](const char* what, std::uint64_t CollectorCounts::* which) {
+      group.addCount(what, [this, camera, which] { return cameras_.counts(camera).*which; });
+    };
+    count("frames_stored", &CollectorCounts::stored);
+    count("frames_lost", &CollectorCounts::missing);
+    count("frames_away", &CollectorCounts::away);
+    count("frames_incomplete", &CollectorCounts::incomplete);
+    count("frames_wrong_size", &CollectorCounts::wrong_size);
+    count("frames_unattributed", &CollectorCounts::unattributed);
+    const PacketCounts& packets = cameras_.packets(camera);
+    group.add("packets_resent", packets.resent);
+    group.add("packets_missing", packets.missing);
+    group.add("packet_underruns", packets.underruns);
+    return group;
+  }
+
   const Shared& shared_;
   CameraArray cameras_;
+  std::vector<MetricsGroup> metrics_;
 };
 
 }  // namespace

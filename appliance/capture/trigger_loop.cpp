@@ -17,7 +17,7 @@ void TriggerLoop::run(const std::stop_token& stop) noexcept {
       rt::PeriodicSchedule{rt::now() + timing_.period, timing_.period, timing_.period / 5}};
   while (!stop.stop_requested()) {
     const auto tick = loop.wait();
-    missed_.store(loop.schedule().missed(), std::memory_order_relaxed);
+    metrics_.missed.raiseTo(loop.schedule().missed());
     if (!tick) continue;
     pulse(tick->deadline);
     steer(loop.schedule());
@@ -30,6 +30,8 @@ void TriggerLoop::pulse(rt::Timestamp deadline) noexcept {
   // The board before anything else: the first packets are only an exposure away.
   const rt::Nanoseconds half = (edge->after - edge->before) / 2;
   edges_.post(++trigger_, edge->before + half, half);
+  metrics_.edges.add();
+  metrics_.lateness.add(edge->after - deadline);
   if (trace_ != nullptr) {
     trace_->record(TriggerRecord{.trigger = trigger_,
                                  .deadline = deadline,
@@ -43,7 +45,7 @@ void TriggerLoop::pulse(rt::Timestamp deadline) noexcept {
 rt::Result<hal::TriggerEdge> TriggerLoop::drive(bool active) noexcept {
   const auto edge = line_.setActive(active);
   failing_.store(!edge, std::memory_order_relaxed);
-  if (!edge) failed_.store(failed() + 1, std::memory_order_relaxed);
+  if (!edge) metrics_.failed.add();
   return edge;
 }
 

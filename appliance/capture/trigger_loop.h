@@ -10,6 +10,8 @@
 #include "appliance/trace/trace_writer.h"
 #include "hal/trigger_line.h"
 #include "rt/clock.h"
+#include "rt/counter.h"
+#include "rt/duration_window.h"
 #include "rt/periodic_loop.h"
 
 namespace appliance {
@@ -20,6 +22,14 @@ struct TriggerTiming {
   rt::Nanoseconds pulse_width;  ///< active this long; less than half a period
   bool genlock = false;         ///< in phase with the screen where the rates allow it
   rt::Nanoseconds genlock_margin{};
+};
+
+/// What the trigger thread counts about itself.
+struct TriggerMetrics {
+  rt::Counter edges;            ///< pulses that left
+  rt::Counter missed;           ///< pulses given up because the thread woke too late
+  rt::Counter failed;           ///< edges that the line did not take
+  rt::DurationWindow lateness;  ///< from a pulse's deadline until it had left
 };
 
 /// Fires the cameras: one pulse per period on an absolute grid, never paused. The genlock moves
@@ -45,11 +55,8 @@ class TriggerLoop {
   /// Until stopped. The line is inactive when it returns.
   void run(const std::stop_token& stop) noexcept;
 
-  /// Pulses given up because the thread woke too late.
-  [[nodiscard]] std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }
-  /// Edges that the line did not take.
-  [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
-  /// Whether the newest edge was one of them.
+  [[nodiscard]] const TriggerMetrics& metrics() const { return metrics_; }
+  /// Whether the line did not take the newest edge.
   [[nodiscard]] bool failing() const { return failing_.load(std::memory_order_relaxed); }
 
  private:
@@ -67,8 +74,7 @@ class TriggerLoop {
   std::uint32_t since_recorded_ = 0;
   TraceProducer* trace_;  // none: not traced
   std::uint64_t trigger_ = 0;
-  std::atomic<std::uint64_t> missed_{0};
-  std::atomic<std::uint64_t> failed_{0};
+  TriggerMetrics metrics_;
   std::atomic<bool> failing_{false};
 };
 

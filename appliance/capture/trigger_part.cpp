@@ -33,7 +33,13 @@ class TriggerPart final : public Part {
         line_(std::move(line)),
         loopback_(std::move(loopback)),
         loop_(timingOf(shared.config.trigger), *line_, shared.board.edges, shared.board.genlock,
-              shared.traceProducer("trigger")) {
+              shared.traceProducer("trigger")),
+        metrics_(shared.metrics.group("trigger")) {
+    const TriggerMetrics& counted = loop_.metrics();
+    metrics_.add("edges", counted.edges);
+    metrics_.add("missed", counted.missed);
+    metrics_.add("failed", counted.failed);
+    metrics_.add("lateness", counted.lateness);
     if (loopback_ && shared.trace != nullptr)
       loopback_loop_.emplace(period_, *loopback_, shared.board.edges,
                              *shared.traceProducer("loopback"));
@@ -78,6 +84,7 @@ class TriggerPart final : public Part {
   const std::unique_ptr<hal::TriggerLine> line_;
   const std::unique_ptr<hal::EdgeInput> loopback_;
   TriggerLoop loop_;
+  MetricsGroup metrics_;
   std::optional<LoopbackLoop> loopback_loop_;
   rt::Thread loopback_thread_;
   rt::Thread thread_;

@@ -225,7 +225,8 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
   }
 
   const auto drawn = parts_.display.render(scene);
-  allowance_.spend(wake, rt::now());  // a picture that the display refuses took its time, too
+  const rt::Timestamp drawn_at = rt::now();
+  allowance_.spend(wake, drawn_at);  // a picture that the display refuses took its time, too
   const bool new_live = shot.mode == Mode::kLive && shot.trigger != on_screen_.shot.trigger;
   if (drawn && frame && new_live) {
     noteReady(frame->frame);
@@ -236,11 +237,12 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
   const auto commit = drawn ? parts_.display.commit(record.picture_id)
                             : rt::Result<rt::Timestamp>(std::unexpected(drawn.error()));
   if (!commit) {
-    ++counters_.skipped;
+    metrics_.skipped.add();
     return false;
   }
-  ++counters_.pictures;
-  if (shot.trigger != on_screen_.shot.trigger) countShown(*commit);
+  metrics_.committed(record.picture_id, *commit);
+  metrics_.draw.add(drawn_at - wake);
+  if (shot.trigger != on_screen_.shot.trigger) metrics_.sets_shown.add();
   picture_id_ = record.picture_id;
   record.imported = drawn->imported;
   record.warp_submit = drawn->warp_submit;
@@ -256,22 +258,14 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
 
 void RenderLoop::noteReady(const StoredFrame& frame) noexcept {
   // The frame is readable microseconds after its last packet.
-  if (frame.trigger_edge != rt::Timestamp{} && frame.last_packet > frame.trigger_edge)
-    ready_delay_.add(frame.last_packet - frame.trigger_edge);
-}
-
-void RenderLoop::countShown(rt::Timestamp commit) noexcept {
-  const rt::Nanoseconds counted = commit - second_begin_;
-  if (counted >= std::chrono::seconds(1)) {
-    counters_.shown_hz = shown_in_second_ * 1e9 / static_cast<double>(counted.count());
-    second_begin_ = commit;
-    shown_in_second_ = 0;
-  }
-  ++shown_in_second_;
+  if (frame.trigger_edge == rt::Timestamp{} || frame.last_packet <= frame.trigger_edge) return;
+  ready_delay_.add(frame.last_packet - frame.trigger_edge);
+  metrics_.ready_delay.add(frame.last_packet - frame.trigger_edge);
 }
 
 void RenderLoop::recordFlips() noexcept {
   while (const auto flip = parts_.display.tryPopFlip()) {
+    metrics_.flipped(*flip);
     if (parts_.trace == nullptr) continue;
     parts_.trace->record(FlipRecord{
         .picture_id = flip->picture_id, .page_flip = flip->page_flip, .vblank = flip->vblank});

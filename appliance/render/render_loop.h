@@ -20,6 +20,7 @@
 #include "appliance/render/moment_hold.h"
 #include "appliance/render/picture_observer.h"
 #include "appliance/render/render_allowance.h"
+#include "appliance/render/render_metrics.h"
 #include "appliance/render/stored_frames.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
@@ -31,9 +32,6 @@ namespace appliance {
 /// What the render thread tells about itself.
 struct RenderStatus {
   Shot shot;
-  std::uint64_t pictures = 0;
-  std::uint64_t skipped = 0;  ///< pictures that the display was not ready for
-  double shown_hz = 0;  ///< distinct frame sets a second, over the last whole second of pictures
   hal::ScreenStatus screen;
   FlickerReport flicker;          ///< of the light; nothing but zeros without compensation
   Target target;                  ///< of the shown moment
@@ -87,6 +85,7 @@ class RenderLoop {
     parts_.board.wake_render.ring();
   }
 
+  [[nodiscard]] const RenderMetrics& metrics() const { return metrics_; }
   [[nodiscard]] RenderStatus status() { return status_.latest(); }
 
  private:
@@ -114,7 +113,6 @@ class RenderLoop {
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
   void noteReady(const StoredFrame& frame) noexcept;
   void evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept;
-  void countShown(rt::Timestamp commit) noexcept;
   void recordFlips() noexcept;
   void talkToGenlock() noexcept;
 
@@ -143,9 +141,8 @@ class RenderLoop {
   rt::HighQuantile ready_delay_;         // of live frames
   std::optional<LockedVblanks> locked_;  // none: triggers are not locked to the screen
   std::uint64_t picture_id_ = 0;
+  RenderMetrics metrics_;
   RenderStatus counters_;
-  rt::Timestamp second_begin_;  // of the second that is being counted
-  std::uint32_t shown_in_second_ = 0;
   rt::LatestValue<RenderStatus> status_;
   std::atomic<bool> screen_released_{false};
 };

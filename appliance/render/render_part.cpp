@@ -7,6 +7,7 @@
 #include "appliance/box/shared.h"
 #include "appliance/capture/camera_settings.h"
 #include "appliance/config/durations.h"
+#include "appliance/metrics/rate_meter.h"
 #include "appliance/render/history_views.h"
 #include "appliance/render/render_loop.h"
 
@@ -57,7 +58,17 @@ class RenderPart final : public Part {
         renderer_(shared.display.renderer()),
         source_path_(sourcePath(shared)),
         frames_(reader, shared.board.edges),
-        loop_(partsOf(shared, frames_), parametersOf(shared.config)) {}
+        loop_(partsOf(shared, frames_), parametersOf(shared.config)),
+        metrics_(shared.metrics.group("render")) {
+    const RenderMetrics& counted = loop_.metrics();
+    metrics_.add("pictures", counted.pictures);
+    metrics_.add("sets_shown", counted.sets_shown);
+    metrics_.add("skipped", counted.skipped);
+    metrics_.add("flips", counted.flips);
+    metrics_.add("draw", counted.draw);
+    metrics_.add("ready_delay", counted.ready_delay);
+    metrics_.add("commit_to_flip", counted.commit_to_flip);
+  }
 
   [[nodiscard]] std::string_view name() const override { return "render"; }
 
@@ -85,8 +96,8 @@ class RenderPart final : public Part {
     const TargetPoint& target = render.target.point;
     status.target_m = {target.x_m, target.y_m, target.z_m};
     status.target_origin = nameOf(render.target.origin);
-    status.shown_hz = render.shown_hz;
-    status.pictures_skipped = render.skipped;
+    status.shown_hz = shown_rate_.hz(rt::now(), loop_.metrics().sets_shown.value());
+    status.pictures_skipped = loop_.metrics().skipped.value();
     status.renderer = renderer_;
     status.source_path = source_path_;
     status.screen = render.screen.state;
@@ -107,6 +118,8 @@ class RenderPart final : public Part {
   const std::string source_path_;
   HistoryViews frames_;
   mutable RenderLoop loop_;  // status() takes the newest of a hand-over
+  MetricsGroup metrics_;
+  mutable RateMeter shown_rate_;
   rt::Thread thread_;
 };
 

@@ -113,7 +113,7 @@ bool runTriggerLoop(const Turn& turn, std::vector<double>& late_us, std::vector<
     done_us.push_back(toUs(record["trigger_edge_after_ns"].get<std::int64_t>() - deadline));
   }
   // A deadline that was given up was later than a fifth of the interval; it counts as that late.
-  for (std::uint64_t i = 0; i < loop.missed(); ++i) {
+  for (std::uint64_t i = 0; i < loop.metrics().missed.value(); ++i) {
     late_us.push_back(toUs(std::chrono::nanoseconds(turn.interval).count()) / 5);
   }
   return true;

@@ -203,8 +203,8 @@ TEST(TriggerLoop, PulsesOnTheRightLineWithPeriodAndWidthExact) {
     ASSERT_TRUE(thread.has_value());
     std::this_thread::sleep_for(60s);
   }
-  EXPECT_EQ(loop.missed(), 0U);
-  EXPECT_EQ(loop.failed(), 0U);
+  EXPECT_EQ(loop.metrics().missed.value(), 0U);
+  EXPECT_EQ(loop.metrics().failed.value(), 0U);
   const auto events = outputEdges(trace.take(), number, false);
   ASSERT_GE(events.size(), 2U * 2390);
   ASSERT_EQ(events.size() % 2, 0U) << "the line was left active";

@@ -26,7 +26,8 @@ TEST(MetricsListing, IsEmptyWithoutMetrics) {
 }
 
 TEST(MetricsListing, TakesWhatAnotherVersionMayGive) {
-  EXPECT_TRUE(metricsListing(R"({"a": "text", "b": null, "c": [1], "d": {"count": 1, "p50_us": "x"}})"));
+  EXPECT_TRUE(
+      metricsListing(R"({"a": "text", "b": null, "c": [1], "d": {"count": 1, "p50_us": "x"}})"));
   EXPECT_FALSE(metricsListing("no JSON"));
   EXPECT_FALSE(metricsListing("[]"));
 }
