@@ -98,4 +98,8 @@ std::expected<std::string, std::string> ControlClient::status() {
   return call(kStatusInterface, "Status", "");
 }
 
+std::expected<std::string, std::string> ControlClient::metrics() {
+  return call(kStatusInterface, "GetMetrics", "");
+}
+
 }  // namespace appliance

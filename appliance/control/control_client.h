@@ -32,6 +32,8 @@ class ControlClient {
   [[nodiscard]] Answer takeScreen();
   /// The JSON of appliance::toJson(Status).
   [[nodiscard]] std::expected<std::string, std::string> status();
+  /// The JSON of appliance::toJson(MetricsSnapshot).
+  [[nodiscard]] std::expected<std::string, std::string> metrics();
 
  private:
   ControlClient(Bus bus, std::string bus_name, std::string name);

@@ -23,6 +23,8 @@ struct ControlPlace {
 
 /// status, mode, delay, view, target, freeze, sweep, screen. @p place outlives the parsing.
 void addControlCommands(CLI::App& kagami, const ControlPlace& place);
+/// metrics. @p place outlives the parsing.
+void addMetricsCommand(CLI::App& kagami, const ControlPlace& place);
 void addConfigCommand(CLI::App& kagami);
 void addPlanCommand(CLI::App& kagami);
 void addDepthCommand(CLI::App& kagami);

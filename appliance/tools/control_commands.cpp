@@ -15,6 +15,7 @@
 
 #include "appliance/control/control_client.h"
 #include "appliance/tools/commands.h"
+#include "appliance/tools/metrics_listing.h"
 #include "appliance/tools/status_text.h"
 
 namespace appliance {
@@ -33,10 +34,11 @@ void expectDone(const ControlClient::Answer& answer) {
 }
 
 void showStatus(const ControlPlace& place, bool as_json) {
-  const auto status = connect(place).status();
+  ControlClient client = connect(place);
+  const auto status = client.status();
   if (!status) fail(status.error());
   if (as_json) {
-    std::printf("%s\n", status->c_str());
+    std::printf("%s\n", withMetrics(*status, client.metrics().value_or("")).c_str());
     return;
   }
   const auto text = statusText(*status);

@@ -96,6 +96,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   kagami.add_option("--name", place.name, "the daemon's name on the bus")->capture_default_str();
   appliance::addControlCommands(kagami, place);
+  appliance::addMetricsCommand(kagami, place);
   appliance::addConfigCommand(kagami);
   appliance::addPlanCommand(kagami);
   appliance::addDepthCommand(kagami);
