@@ -1,13 +1,10 @@
 #include "appliance/box/box.h"
 
-#include <cstdint>
-#include <string>
 #include <utility>
 
 #include "appliance/box/memory.h"
 #include "appliance/box/run_facts.h"
 #include "appliance/metrics/metrics_text.h"
-#include "appliance/version/version.h"
 
 namespace appliance {
 
@@ -42,9 +39,8 @@ std::expected<void, std::string> Box::makeShared(const BoxParts& parts) {
   const Config& config = site_.config;
   std::uint32_t pins = 0;
   for (const PartEntry& part : parts.parts) pins += part.pins_per_camera;
-  const bool shared = parts.display.uploadReason().empty();
-  auto history =
-      makeHistory(config, site_.rig, {.pins_per_camera = pins, .shared = shared}, remarks_);
+  const HistoryUse use{.pins_per_camera = pins, .shared = parts.display.uploadReason().empty()};
+  auto history = makeHistory(config, site_.rig, use, remarks_);
   if (!history) return std::unexpected(history.error());
   history_ = std::move(*history);
   if (auto locked = lockMemory(config.realtime, *history_, remarks_); !locked) return locked;
@@ -157,12 +153,7 @@ std::vector<BusObject> Box::busObjects() const {
 Status Box::status() const {
   Status status{.degraded = remarks_.list()};
   parts_.report(status);
-  status.sections.push_back({.key = "version", .line = std::string(version())});
-  StatusSection commands{.key = "commands", .line = ""};
-  for (const auto& sender : commands_.senders())
-    commands.values.push_back(
-        {sender->name() + "_refused", static_cast<std::int64_t>(sender->refused())});
-  status.sections.push_back(std::move(commands));
+  addBoxSections(status, commands_);
   return status;
 }
 

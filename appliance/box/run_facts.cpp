@@ -1,5 +1,6 @@
 #include "appliance/box/run_facts.h"
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,15 @@
 #include "hal/pixel_format.h"
 
 namespace appliance {
+
+void addBoxSections(Status& status, const CommandInbox& commands) {
+  status.sections.push_back({.key = "version", .line = std::string(version())});
+  StatusSection refused{.key = "commands", .line = ""};
+  for (const auto& sender : commands.senders())
+    refused.values.push_back(
+        {sender->name() + "_refused", static_cast<std::int64_t>(sender->refused())});
+  status.sections.push_back(std::move(refused));
+}
 
 RunRecord runRecord(const Shared& shared, const Status& status) {
   std::vector<std::string> degraded;

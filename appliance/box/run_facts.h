@@ -6,6 +6,9 @@
 
 namespace appliance {
 
+/// Adds what the box itself says: its version, and the commands that were refused.
+void addBoxSections(Status& status, const CommandInbox& commands);
+
 /// The first record of a trace: what runs, as soon as every thread does.
 [[nodiscard]] RunRecord runRecord(const Shared& shared, const Status& status);
 
