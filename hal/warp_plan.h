@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "hal/colour_model.h"
+#include "hal/edge_mask.h"
 #include "hal/lens.h"
 #include "hal/pixel_format.h"
 #include "rt/dma_buf.h"
@@ -26,7 +28,8 @@ struct WarpPlan {
   SourceImage source;
   std::array<double, 9> H_camera_display{};  ///< row-major
   Lens lens;
-  std::array<float, 3> gain_rgb{1, 1, 1};  ///< applied in linear light
+  ColourModel colour;
+  EdgeMask edge;
 };
 
 }  // namespace hal

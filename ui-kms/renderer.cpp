@@ -10,6 +10,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "rt/clock.h"
+#include "ui-kms/warp_shaders.h"
 
 namespace ui {
 namespace {
@@ -106,6 +107,8 @@ std::expected<void, std::string> Renderer::warmUp(const RendererConfig& config) 
   draw(*target, scene);
   if (auto right = expectGrey(*target); !right) return right;
   scene.layers[1] = scene.layers[0];
+  scene.layers[0].plan.colour.black_level = 1;  // the whole colour model
+  draw(*target, scene);
   scene.layers[1].opacity = 0.5F;
   scene.count = 2;
   *overlay = {};  // the first that is made is another one
@@ -179,10 +182,13 @@ bool Renderer::needsBlending(const hal::Scene& scene, const Sources& sources) co
   return false;
 }
 
-/// Into the framebuffer that is bound.
+/// Into the framebuffer that is bound. A picture without layers is black.
 void Renderer::drawLayers(const hal::Scene& scene, const Sources& sources,
                           WarpPass::Output output) {
-  glClearColor(0, 0, 0, 1);
+  float beside =
+      output == WarpPass::Output::kScreen ? shader::kSurroundCode : shader::kSurroundLight;
+  if (scene.count == 0) beside = 0;
+  glClearColor(beside, beside, beside, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   if (output == WarpPass::Output::kLinear) {
     glEnable(GL_BLEND);

@@ -9,6 +9,7 @@ namespace {
 // Where a corner's lookup falls. Four corners beyond the same side: the whole cell is.
 constexpr std::uint8_t kBehind = 1;  ///< w <= 0, or not a number
 constexpr std::uint8_t kBeyondLens = 2;
+constexpr std::uint8_t kMasked = 128;  ///< in the soft edge or beyond it
 constexpr std::uint8_t kLeft = 4, kRight = 8, kAbove = 16, kBelow = 32;  ///< a texel or more out
 constexpr std::uint8_t kOffSource = 64;  ///< any part of the bilinear footprint outside
 
@@ -55,6 +56,7 @@ void WarpMesh::updateVertices(const hal::WarpPlan& plan) {
   const double width_px = plan.source.width_px;
   const double height_px = plan.source.height_px;
   const double max_radius2 = lens.max_radius * lens.max_radius;
+  const bool masked = plan.edge.active();
   for (std::uint32_t j = first_row_; j <= last_row_; ++j) {
     const double y_px = rowPx(j);
     for (std::uint32_t i = first_column_; i <= last_column_; ++i) {
@@ -88,6 +90,9 @@ void WarpMesh::updateVertices(const hal::WarpPlan& plan) {
       vertex.texture_v_w = static_cast<float>((v_px + 0.5) / height_px * w);
       vertex.texture_w = static_cast<float>(w);
       where_[at] = sideBits(u_px, v_px, width_px, height_px);
+      if (masked && plan.edge.at((x_px + 0.5) / width_px_ * 2 - 1,
+                                 (y_px + 0.5) / height_px_ * 2 - 1) > hal::EdgeMask::kNone)
+        where_[at] |= kMasked;
     }
   }
 }

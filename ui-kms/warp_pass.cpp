@@ -20,6 +20,11 @@ GLsizeiptr bytesOf(const auto& values) {
   return static_cast<GLsizeiptr>(values.size() * sizeof(values[0]));
 }
 
+shader::Colour colourOf(const hal::ColourModel& colour) {
+  const hal::ColourModel gains_alone{.gain_rgb = colour.gain_rgb};
+  return colour == gains_alone ? shader::Colour::kGains : shader::Colour::kModel;
+}
+
 float narrow(double value) {
   return static_cast<float>(value);
 }
@@ -36,26 +41,35 @@ std::expected<WarpPass::Program, std::string> WarpPass::makeProgram(const char* 
   const auto at = [&program](const char* name) { return uniform(program.program, name); };
   program.gain_rgb = at("gain_rgb");
   program.opacity = at("opacity");
+  program.from_camera = at("from_camera");
+  program.vignetting = at("vignetting");
+  program.black = at("black");
   program.focal_px = at("focal_px");
   program.centre_px = at("centre_px");
   program.radial = at("radial");
   program.tangential = at("tangential");
   program.max_radius2 = at("max_radius2");
   program.source_px = at("source_px");
+  program.narrowing = at("narrowing");
   return program;
 }
 
 std::expected<WarpPass, std::string> WarpPass::create() {
+  using shader::Colour;
   WarpPass pass;
+  auto& [gains, model] = pass.inner_;
+  const std::string inner = shader::innerVertex();
   struct Wanted {
     Program& into;
     const char* name;
     std::string vertex, fragment;
   };
   for (const Wanted& wanted : {
-           Wanted{pass.inner_[0], "warp", shader::innerVertex(), shader::innerToScreen()},
+           Wanted{gains[0], "warp", inner, shader::innerToScreen(Colour::kGains)},
+           Wanted{gains[1], "warp linear", inner, shader::innerToLinear(Colour::kGains)},
+           Wanted{model[0], "warp colour", inner, shader::innerToScreen(Colour::kModel)},
+           Wanted{model[1], "warp colour linear", inner, shader::innerToLinear(Colour::kModel)},
            Wanted{pass.edge_[0], "warp edge", shader::edgeVertex(), shader::edgeToScreen()},
-           Wanted{pass.inner_[1], "warp linear", shader::innerVertex(), shader::innerToLinear()},
            Wanted{pass.edge_[1], "warp edge linear", shader::edgeVertex(), shader::edgeToLinear()},
        }) {
     auto program = makeProgram(wanted.name, wanted.vertex, wanted.fragment);
@@ -82,11 +96,13 @@ std::expected<void, std::string> WarpPass::resize(SizePx picture, Orientation or
 gl::Buffer WarpPass::makePositions(const WarpMesh& cells, Orientation orientation) {
   const double width_px = cells.columnPx(cells.columns() - 1) + 0.5;
   const double height_px = cells.rowPx(cells.rows() - 1) + 0.5;
-  std::vector<std::array<float, 2>> positions;
+  std::vector<std::array<float, 4>> positions;
   for (std::uint32_t j = 0; j < cells.rows(); ++j) {
     for (std::uint32_t i = 0; i < cells.columns(); ++i) {
-      positions.push_back(orientation.turned(narrow((cells.columnPx(i) + 0.5) / width_px * 2 - 1),
-                                             narrow((cells.rowPx(j) + 0.5) / height_px * 2 - 1)));
+      const float u = narrow((cells.columnPx(i) + 0.5) / width_px * 2 - 1);
+      const float v = narrow((cells.rowPx(j) + 0.5) / height_px * 2 - 1);
+      const auto [x, y] = orientation.turned(u, v);
+      positions.push_back({x, y, u, v});
     }
   }
   gl::Buffer buffer = gl::makeBuffer();
@@ -103,7 +119,10 @@ void WarpPass::makeBuffers(Mesh& mesh) const {
   glBindVertexArray(mesh.layout.get());
   glBindBuffer(GL_ARRAY_BUFFER, positions_.get());
   glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+  constexpr GLsizei kPosition = 4 * sizeof(float);
+  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kPosition, nullptr);
+  glEnableVertexAttribArray(3);
+  glVertexAttribPointer(3, 2, GL_FLOAT, GL_FALSE, kPosition, offset(2 * sizeof(float)));
   glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.get());
   glBufferData(GL_ARRAY_BUFFER, bytesOf(mesh.cells.vertices()), nullptr, GL_STREAM_DRAW);
   glEnableVertexAttribArray(1);
@@ -140,7 +159,8 @@ void WarpPass::draw(std::uint32_t index, const hal::ViewLayer& layer, GLuint sou
                    offset(static_cast<std::size_t>(at)));
   };
   if (!inner.empty()) {
-    useFor(inner_[static_cast<std::size_t>(output)], layer);
+    const auto colour = static_cast<std::size_t>(colourOf(layer.plan.colour));
+    useFor(inner_[colour][static_cast<std::size_t>(output)], layer);
     drawCells(inner, 0);
   }
   if (!edge.empty()) {
@@ -153,21 +173,38 @@ void WarpPass::draw(std::uint32_t index, const hal::ViewLayer& layer, GLuint sou
 
 void WarpPass::useFor(const Program& program, const hal::ViewLayer& layer) {
   glUseProgram(program.program.get());
-  glUniform3fv(program.gain_rgb, 1, layer.plan.gain_rgb.data());
+  if (program.gain_rgb >= 0) {
+    glUniform3fv(program.gain_rgb, 1, layer.plan.colour.gain_rgb.data());
+  } else {
+    setColour(program, layer.plan);
+  }
   if (program.opacity >= 0) glUniform1f(program.opacity, std::clamp(layer.opacity, 0.0F, 1.0F));
 }
 
+void WarpPass::setColour(const Program& program, const hal::WarpPlan& plan) {
+  const hal::ColourModel& colour = plan.colour;
+  std::array<float, 9> from_camera{};
+  for (std::size_t i = 0; i < from_camera.size(); ++i)
+    from_camera[i] = colour.matrix[i] * colour.gain_rgb[i % 3];
+  glUniformMatrix3fv(program.from_camera, 1, GL_TRUE, from_camera.data());
+  glUniform3fv(program.vignetting, 1, colour.vignetting.data());
+  glUniform1f(program.black, colour.black_level / 255);
+  glUniform2f(program.centre_px, narrow(plan.lens.cx_px), narrow(plan.lens.cy_px));
+  glUniform2f(program.source_px, static_cast<float>(plan.source.width_px),
+              static_cast<float>(plan.source.height_px));
+}
+
 void WarpPass::setLens(const Program& program, const hal::WarpPlan& plan) {
+  static_assert(hal::EdgeMask::kPlaces == 64 && hal::EdgeMask::kFeather == 0.02F,
+                "the edge shader has these numbers, too");
   const auto [k1, k2, p1, p2, k3] = plan.lens.distortion;
   // A radius without a limit must not become an infinity inside the shader.
   const double max_radius2 = std::min(plan.lens.max_radius * plan.lens.max_radius, 1e30);
   glUniform2f(program.focal_px, narrow(plan.lens.fx_px), narrow(plan.lens.fy_px));
-  glUniform2f(program.centre_px, narrow(plan.lens.cx_px), narrow(plan.lens.cy_px));
   glUniform3f(program.radial, narrow(k1), narrow(k2), narrow(k3));
   glUniform2f(program.tangential, narrow(p1), narrow(p2));
   glUniform1f(program.max_radius2, narrow(max_radius2));
-  glUniform2f(program.source_px, static_cast<float>(plan.source.width_px),
-              static_cast<float>(plan.source.height_px));
+  glUniform1fv(program.narrowing, hal::EdgeMask::kPlaces, plan.edge.narrowing.data());
 }
 
 }  // namespace ui

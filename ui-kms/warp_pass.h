@@ -13,8 +13,8 @@
 
 namespace ui {
 
-/// Draws one view: backward map, bilinear in linear light, colour gains; then sRGB encoding, or
-/// linear light for blending.
+/// Draws one view: backward map, bilinear in linear light, colour model, soft edge; then sRGB
+/// encoding, or linear light for blending.
 ///
 /// Threads  The one that has the context.
 /// Memory   create() compiles; resize() makes the meshes of all layers.
@@ -45,9 +45,10 @@ class WarpPass {
   struct Program {
     gl::Program program;
     GLint gain_rgb = -1, opacity = -1;
+    // The whole colour model only.
+    GLint from_camera = -1, vignetting = -1, black = -1, centre_px = -1, source_px = -1;
     // Edge cells only.
-    GLint focal_px = -1, centre_px = -1, radial = -1, tangential = -1;
-    GLint max_radius2 = -1, source_px = -1;
+    GLint focal_px = -1, radial = -1, tangential = -1, max_radius2 = -1, narrowing = -1;
   };
 
   WarpPass() = default;
@@ -57,11 +58,12 @@ class WarpPass {
   [[nodiscard]] static gl::Buffer makePositions(const WarpMesh& cells, Orientation orientation);
   void makeBuffers(Mesh& mesh) const;
   static void useFor(const Program& program, const hal::ViewLayer& layer);
+  static void setColour(const Program& program, const hal::WarpPlan& plan);
   static void setLens(const Program& program, const hal::WarpPlan& plan);
 
-  std::array<Program, 2> inner_;  // by Output
+  std::array<std::array<Program, 2>, 2> inner_;  // by shader::Colour and Output
   std::array<Program, 2> edge_;
-  gl::Buffer positions_;  // of the corners, on the screen as it hangs
+  gl::Buffer positions_;  // of the corners: on the screen as it hangs, and upright
   std::array<std::optional<Mesh>, hal::Scene::kMostLayers> meshes_;
 };
 

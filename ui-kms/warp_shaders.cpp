@@ -1,5 +1,7 @@
 #include "ui-kms/warp_shaders.h"
 
+#include <initializer_list>
+
 namespace ui::shader {
 namespace {
 
@@ -16,9 +18,12 @@ void main() {
 constexpr const char* kEdgeVertex = R"(#version 300 es
 layout(location = 0) in vec2 position;
 layout(location = 2) in vec3 ray_w;
+layout(location = 3) in vec2 upright;
 out vec3 ray;
+out vec2 place;
 void main() {
   ray = ray_w;
+  place = upright;
   gl_Position = vec4(position, 0.0, 1.0);
 }
 )";
@@ -50,23 +55,59 @@ vec3 encode(vec3 c) {
 }
 )";
 
-// From the stored value to linear light.
-constexpr const char* kLight = R"(
+// seen(): linear light, and how much of the pixel is picture.
+constexpr const char* kInnerSeenGains = R"(
 uniform vec3 gain_rgb;
-vec3 light(vec3 stored) { return stored * gain_rgb; }
+in vec3 at;
+vec4 seen() { return vec4(textureProj(source, at).rgb * gain_rgb, 1.0); }
 )";
 
-// seen(): linear light, and how much of the pixel the camera sees.
-constexpr const char* kInnerSeen = R"(
+// From the stored value to linear light: hal::ColourModel. The gains are part of the matrix.
+constexpr const char* kLight = R"(
+uniform vec2 centre_px, source_px;
+uniform mat3 from_camera;
+uniform vec3 vignetting;
+uniform float black;
+vec3 light(vec3 stored, vec2 at_px) {
+  vec2 off = at_px - centre_px;
+  float r2 = 4.0 * dot(off, off) / dot(source_px, source_px);
+  float fall_off = 1.0 + r2 * (vignetting.x + r2 * (vignetting.y + r2 * vignetting.z));
+  return max(from_camera * ((stored - black) / ((1.0 - black) * fall_off)), 0.0);
+}
+)";
+
+constexpr const char* kInnerSeenModel = R"(
 in vec3 at;
-vec4 seen() { return vec4(light(textureProj(source, at).rgb), 1.0); }
+vec4 seen() {
+  vec2 at_px = at.xy / at.z * source_px - 0.5;
+  return vec4(light(textureProj(source, at).rgb, at_px), 1.0);
+}
+)";
+
+// How much of the picture is shown at a place of the display, from -1 to 1 in both directions: what
+// hal::EdgeMask says, with its soft edge.
+constexpr const char* kEdgeMask = R"(
+uniform float narrowing[64];
+float shownAt(vec2 p) {
+  vec2 size = abs(p);
+  float outwards = max(max(size.x, size.y), 1e-6);
+  bool steep = size.y >= size.x;
+  float side = steep ? (p.y < 0.0 ? 0.0 : 2.0) : (p.x > 0.0 ? 1.0 : 3.0);
+  float along = (steep ? (p.y < 0.0 ? p.x : -p.x) : (p.x > 0.0 ? p.y : -p.y)) / outwards;
+  float at = (side + (along + 1.0) / 2.0) * 16.0;
+  int before = int(at);
+  float narrow =
+      mix(narrowing[before & 63], narrowing[(before + 1) & 63], at - float(before));
+  return smoothstep(0.0, 0.02, 1.0 - outwards * narrow);
+}
 )";
 
 // The whole map per pixel. Outside the source a texel counts as unseen, which weighs the lookup by
 // the part of its footprint that is inside.
 constexpr const char* kEdgeSeen = R"(
 in vec3 ray;
-uniform vec2 focal_px, centre_px, source_px, tangential;
+in vec2 place;
+uniform vec2 focal_px, tangential;
 uniform vec3 radial;
 uniform float max_radius2;
 vec4 seen() {
@@ -78,15 +119,17 @@ vec4 seen() {
   vec2 at_px = d * focal_px + centre_px;
   vec2 inside = clamp(at_px + 1.0, 0.0, 1.0) * clamp(source_px - at_px, 0.0, 1.0);
   bool valid = ray.z > 0.0 && r2 <= max_radius2;
-  vec4 view = vec4(light(texture(source, (at_px + 0.5) / source_px).rgb), inside.x * inside.y);
+  vec3 stored = texture(source, (at_px + 0.5) / source_px).rgb;
+  vec4 view = vec4(light(stored, at_px), inside.x * inside.y * shownAt(place));
   return valid ? view : vec4(0.0);
 }
 )";
 
 constexpr const char* kToScreen = R"(
+const vec3 surround = vec3(0.006048);
 void main() {
   vec4 view = seen();
-  colour = vec4(encode(min(view.rgb * view.a, 1.0)), 1.0);
+  colour = vec4(encode(mix(surround, min(view.rgb, 1.0), view.a)), 1.0);
 }
 )";
 
@@ -105,8 +148,10 @@ void main() {
 }
 )";
 
-std::string joined(const char* a, const char* b, const char* c, const char* d = "") {
-  return std::string(kHead) + a + b + c + d;
+std::string joined(std::initializer_list<const char*> pieces) {
+  std::string all = kHead;
+  for (const char* piece : pieces) all += piece;
+  return all;
 }
 
 }  // namespace
@@ -117,23 +162,25 @@ std::string innerVertex() {
 std::string edgeVertex() {
   return kEdgeVertex;
 }
-std::string innerToScreen() {
-  return joined(kEncode, kLight, kInnerSeen, kToScreen);
+std::string innerToScreen(Colour colour) {
+  return colour == Colour::kGains ? joined({kEncode, kInnerSeenGains, kToScreen})
+                                  : joined({kEncode, kLight, kInnerSeenModel, kToScreen});
 }
 std::string edgeToScreen() {
-  return joined(kEncode, kLight, kEdgeSeen, kToScreen);
+  return joined({kEncode, kLight, kEdgeMask, kEdgeSeen, kToScreen});
 }
-std::string innerToLinear() {
-  return joined(kLight, kInnerSeen, kToLinear);
+std::string innerToLinear(Colour colour) {
+  return colour == Colour::kGains ? joined({kInnerSeenGains, kToLinear})
+                                  : joined({kLight, kInnerSeenModel, kToLinear});
 }
 std::string edgeToLinear() {
-  return joined(kLight, kEdgeSeen, kToLinear);
+  return joined({kLight, kEdgeMask, kEdgeSeen, kToLinear});
 }
 std::string everywhereVertex() {
   return kEverywhereVertex;
 }
 std::string linearToScreen() {
-  return joined(kEncode, kLinearToScreen, "");
+  return joined({kEncode, kLinearToScreen});
 }
 
 }  // namespace ui::shader

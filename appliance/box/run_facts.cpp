@@ -33,7 +33,7 @@ RunRecord runRecord(const Shared& shared, const Status& status) {
           .cameras = shared.history.cameras(),
           .width_px = shared.rig.cameras.front().width_px,
           .height_px = shared.rig.cameras.front().height_px,
-          .pixel_format = hal::genicamName(shared.config.cameras.pixel_format),
+          .pixel_format = hal::genicamName(shared.rig.cameras.front().pixel_format),
           .trigger_hz = shared.config.trigger.rate_hz,
           .display_width_px = mode.width_px,
           .display_height_px = mode.height_px,

@@ -38,7 +38,7 @@ hal::CameraProfile profileOf(const Config& site, const RigCamera& camera, std::s
           .address = config.addresses[index],
           .width_px = camera.width_px,
           .height_px = camera.height_px,
-          .pixel_format = config.pixel_format,
+          .pixel_format = camera.pixel_format,
           .exposure_us = config.exposure_us,
           .gain_db = config.gain_db,
           .white_balance_rgb = config.white_balance_rgb,

@@ -23,7 +23,7 @@ void read(Section section, Config::Display& display) {
   if (display.rotation_deg % 90 != 0) {
     section.fail("rotation_deg", "rotation_deg must be 0, 90, 180 or 270");
   }
-  section.number("zoom", display.zoom, {0.1, 20});
+  section.numberOrWord("zoom", display.zoom, {0.1, 20}, "cover");
   section.integer("render_threads", display.render_threads, {1, 64, "threads"});
   section.word("font", display.font);
   section.flag("flicker_compensation", display.flicker_compensation);
@@ -85,8 +85,8 @@ void checkTogether(const TomlTable& root, const Config& config) {
 }
 
 /// Reads what @p root holds over @p config; every key that exists, in the file's order.
-std::vector<std::string> readAll(const TomlTable& root, Config& config) {
-  ConfigReading reading;
+std::vector<std::string> readAll(const TomlTable& root, Config& config, bool typed) {
+  ConfigReading reading{.typed = typed};
   Section sections(root, "", reading);
   visitSections(config,
                 [&](std::string_view name, auto& settings) { read(sections.sub(name), settings); });
@@ -143,12 +143,13 @@ std::string withoutLine(std::string message, const std::string& name) {
 std::expected<Config, std::string> configOf(TomlFile file,
                                             const std::vector<std::string>& overrides) {
   Config config;
-  (void)readAll(file.root(), config);
+  (void)readAll(file.root(), config, false);
   if (file.fault()) return std::unexpected(*file.fault());
+  config.warnings.insert(config.warnings.end(), file.warnings().begin(), file.warnings().end());
   for (const std::string& text : overrides) {
     const auto layer = parseOverride(text);
     if (!layer) return std::unexpected(withoutLine(layer.error(), nameOf(text)));
-    (void)readAll(layer->root(), config);
+    (void)readAll(layer->root(), config, true);
     if (layer->fault()) return std::unexpected(withoutLine(*layer->fault(), nameOf(text)));
   }
   checkTogether(file.root(), config);
@@ -161,7 +162,7 @@ std::expected<Config, std::string> configOf(TomlFile file,
 std::vector<std::string> configKeys() {
   Config config;
   const auto empty = TomlFile::parse("", "");
-  return readAll(empty->root(), config);
+  return readAll(empty->root(), config, false);
 }
 
 std::expected<Config, std::string> loadConfig(const std::string& path,

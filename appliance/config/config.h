@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <expected>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +34,7 @@ struct Config {
     std::uint32_t height_px = 720;
     double refresh_hz = 80;
     std::uint32_t rotation_deg = 0;  ///< how far the screen is turned, clockwise
-    double zoom = 1;
+    std::optional<double> zoom;      ///< none: "cover", the smallest that leaves no border
     std::uint32_t render_threads = 2;
     std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
     bool flicker_compensation = false;
@@ -110,7 +111,8 @@ void visitSections(Config& config, Visitor&& visit) {
 /// in TOML; a value that is not TOML is taken as text, so that a shell needs no second quotes.
 ///
 /// Errors   One line for a person: file and line (or the override), what, what to do. A key that
-///          does not exist is refused, with the nearest one that does.
+///          does not exist is ignored with a warning (another version may have written it); in an
+///          override it is refused. Both name the nearest one that exists.
 [[nodiscard]] std::expected<Config, std::string> loadConfig(
     const std::string& path, const std::vector<std::string>& overrides = {});
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,9 @@ namespace appliance {
 
 /// What reading the configuration collects besides values.
 struct ConfigReading {
+  /// A person has just typed it: an unknown key is an error. In a file another version may have
+  /// written it: then it is ignored with a warning.
+  bool typed = false;
   std::vector<std::string> keys;      ///< every key there is, as "section.key"
   std::vector<std::string> warnings;  ///< what was read and has no effect, one line each
 };
@@ -54,6 +58,19 @@ class Section {
   void flag(std::string_view key, bool& value) { value = named(key).flagOr(key, value); }
   void number(std::string_view key, double& value, const NumberRange& range) {
     value = named(key).numberOr(key, value, range);
+  }
+  /// A number, or @p word for none.
+  void numberOrWord(std::string_view key, std::optional<double>& value, const NumberRange& range,
+                    std::string_view word) {
+    const TomlTable& table = named(key);
+    if (table.isText(key) && table.text(key) == word) {
+      value.reset();
+    } else if (table.isText(key)) {
+      fail(key, std::string(key) + " must be a number or \"" + std::string(word) + "\", not \"" +
+                    table.text(key) + "\"");
+    } else if (table.has(key)) {
+      value = table.number(key, range);
+    }
   }
   void numbers(std::string_view key, std::vector<double>& value, const NumberRange& range) {
     value = named(key).numberListOr(key, value, range);
@@ -103,8 +120,10 @@ class Section {
                                  "): remove it from the configuration");
   }
 
-  /// After the last key: every other one is refused.
-  void end() const { table_.allowKeys(own_keys_); }
+  /// After the last key: every other one is unknown.
+  void end() const {
+    reading_->typed ? table_.allowKeys(own_keys_) : table_.warnUnknownKeys(own_keys_);
+  }
 
  private:
   TomlTable table_;

@@ -249,6 +249,11 @@ bool TomlTable::has(std::string_view key) const {
   return Access::find(*this, key) != nullptr;
 }
 
+bool TomlTable::isText(std::string_view key) const {
+  const toml::node* node = Access::find(*this, key);
+  return node != nullptr && node->is_string();
+}
+
 std::string TomlTable::text(std::string_view key) const {
   const toml::node* node = Access::demand(*this, key);
   return node != nullptr ? Access::readText(*this, *node, key) : std::string();

@@ -95,6 +95,7 @@ class TomlTable {
   }
 
   [[nodiscard]] bool has(std::string_view key) const;
+  [[nodiscard]] bool isText(std::string_view key) const;
   [[nodiscard]] std::string text(std::string_view key) const;
   [[nodiscard]] std::string textOr(std::string_view key, std::string_view fallback) const;
   [[nodiscard]] bool flagOr(std::string_view key, bool fallback) const;

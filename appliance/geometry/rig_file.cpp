@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -11,11 +12,13 @@
 #include "appliance/config/toml_reader.h"
 #include "appliance/geometry/homography.h"
 #include "appliance/geometry/lens.h"
+#include "hal/pixel_format.h"
 
 namespace appliance {
 namespace {
 
-constexpr std::int64_t kFormat = 1;
+/// Older formats lack keys and are read; a newer one is read as far as its keys are known.
+constexpr std::int64_t kNewestFormat = 2;
 /// Rows written with six decimals are orthonormal to about 1e-6; a typing error is far above.
 constexpr double kRotationTolerance = 1e-4;
 constexpr std::int64_t kLargestSide_px = 16384;
@@ -32,6 +35,19 @@ std::string metres(double value) {
 
 /// A focal length of the rig file: strictly positive.
 constexpr NumberRange kFocal = {1, kLargestFocal_px, "px"};
+
+/// Half the range: more is no pedestal but a wrong unit.
+constexpr NumberRange kBlackLevel = {0, 127, "(8-bit codes)"};
+constexpr NumberRange kMatrixElement = {-16, 16, ""};
+constexpr std::size_t kMostVignettingTerms = 3;
+// Darker than the first, noise is all that a gain would show; no lens is brighter at its edge.
+constexpr double kDarkestFallOff = 0.05;
+constexpr double kBrightestFallOff = 2;
+
+// The working point itself with a hand's breadth around it: docs/decisions/0020-cover-zoom.md.
+constexpr double kUsualRadius_m = 0.1;
+constexpr double kUsualHeight_m = 0.2;
+constexpr NumberRange kVolumeLength = {0, 100, "m"};
 
 void readPose(const TomlTable& table, RigCamera& camera) {
   const std::vector<double> rows = table.matrix("T_cam_rig", 3, 4);
@@ -57,13 +73,67 @@ void readPose(const TomlTable& table, RigCamera& camera) {
   camera.R_cam_rig = Eigen::Quaterniond(camera.R_cam_rig).normalized().toRotationMatrix();
 }
 
-RigCamera readCamera(TomlTable& table, std::size_t number) {
+float narrow(double value) {
+  return static_cast<float>(value);
+}
+
+void readColour(const TomlTable& table, hal::ColourModel& colour) {
+  if (table.has("gain_rgb"))
+    std::ranges::transform(table.numbers<3>("gain_rgb", {0.01, 100, ""}), colour.gain_rgb.begin(),
+                           narrow);
+  colour.black_level = narrow(table.numberOr("black_level", 0, kBlackLevel));
+  if (table.has("colour_matrix"))
+    std::ranges::transform(table.matrix("colour_matrix", 3, 3, kMatrixElement),
+                           colour.matrix.begin(), narrow);
+  const auto terms = table.numberListOr("vignetting", {}, {-100, 100, ""});
+  if (terms.size() > kMostVignettingTerms) {
+    table.fail("vignetting", "vignetting must be up to " + std::to_string(kMostVignettingTerms) +
+                                 " numbers, for r^2, r^4 and r^6, not " +
+                                 std::to_string(terms.size()));
+    return;
+  }
+  std::ranges::transform(terms, colour.vignetting.begin(), narrow);
+}
+
+/// Everywhere in the picture there is light to correct.
+void checkVignetting(const TomlTable& table, const RigCamera& camera) {
+  const hal::Lens& lens = camera.lens;
+  const double far_x = std::max(lens.cx_px, camera.width_px - 1 - lens.cx_px);
+  const double far_y = std::max(lens.cy_px, camera.height_px - 1 - lens.cy_px);
+  const double half_diagonal = std::hypot(camera.width_px, camera.height_px) / 2;
+  const double farthest2 = (far_x * far_x + far_y * far_y) / (half_diagonal * half_diagonal);
+  constexpr int kSteps = 256;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double r2 = farthest2 * step / kSteps;
+    const auto& v = camera.colour.vignetting;
+    const double fall_off = 1 + r2 * (v[0] + r2 * (v[1] + r2 * v[2]));
+    if (fall_off >= kDarkestFallOff && fall_off <= kBrightestFallOff) continue;
+    table.fail("vignetting",
+               "vignetting leaves less than 5 % or more than 200 % of the light in a part of the "
+               "picture; r is 1 at half the picture's diagonal");
+    return;
+  }
+}
+
+hal::PixelFormat readPixelFormat(const TomlTable& table, hal::PixelFormat usual) {
+  const std::string name = table.textOr("pixel_format", hal::genicamName(usual));
+  std::string known;
+  for (const hal::PixelFormat format : hal::kPixelFormats) {
+    if (name == hal::genicamName(format)) return format;
+    known += std::string(known.empty() ? "" : ", ") + hal::genicamName(format);
+  }
+  table.fail("pixel_format", "pixel_format must be one of " + known + ", not \"" + name + "\"");
+  return usual;
+}
+
+RigCamera readCamera(TomlTable& table, std::size_t number, hal::PixelFormat usual_format) {
   RigCamera camera;
   table.setLabel("camera " + std::to_string(number));
   camera.name = table.textOr("name", "");
   if (!camera.name.empty()) table.setLabel("camera \"" + camera.name + "\"");
-  table.allowKeys(
-      {"name", "image_size_px", "focal_px", "centre_px", "distortion", "T_cam_rig", "gain_rgb"});
+  table.warnUnknownKeys({"name", "image_size_px", "focal_px", "centre_px", "distortion",
+                         "T_cam_rig", "gain_rgb", "pixel_format", "black_level", "colour_matrix",
+                         "vignetting"});
   if (table.text("name").empty()) table.fail("name", "name is empty; give the camera one");
 
   const auto size_px = table.numbers<2>("image_size_px", {1, kLargestSide_px, "px"});
@@ -84,10 +154,8 @@ RigCamera readCamera(TomlTable& table, std::size_t number) {
   lens.cy_px = centre_px[1];
   lens.distortion = table.numbers<5>("distortion", {-1000, 1000, ""});
   readPose(table, camera);
-  const auto gain_rgb = table.has("gain_rgb") ? table.numbers<3>("gain_rgb", {0.01, 100, ""})
-                                              : std::array<double, 3>{1, 1, 1};
-  std::ranges::transform(gain_rgb, camera.gain_rgb.begin(),
-                         [](double gain) { return static_cast<float>(gain); });
+  readColour(table, camera.colour);
+  camera.pixel_format = readPixelFormat(table, usual_format);
   return camera;
 }
 
@@ -118,21 +186,48 @@ void checkTarget(const TomlTable& table, const RigCamera& camera, const Eigen::V
   }
 }
 
-std::expected<Rig, std::string> readRig(const TomlFile& file) {
+TargetVolume readTargetVolume(const TomlTable& table) {
+  table.warnUnknownKeys({"centre_m", "radius_m", "height_m", "size_m"});
+  TargetVolume volume;
+  if (table.has("centre_m")) {
+    const auto centre_m = table.numbers<3>("centre_m", kLength);
+    volume.centre_m = Eigen::Vector3d(centre_m.data());
+  }
+  if (table.has("size_m")) {
+    if (table.has("radius_m") || table.has("height_m"))
+      table.fail("size_m",
+                 "size_m makes a box, radius_m and height_m a cylinder; keep one of them");
+    const auto size_m = table.numbers<3>("size_m", kVolumeLength);
+    volume.shape = TargetVolume::Shape::kBox;
+    volume.half_size_m = Eigen::Map<const Eigen::Vector3d>(size_m.data()) / 2;
+    return volume;
+  }
+  const double radius_m = table.numberOr("radius_m", kUsualRadius_m, kVolumeLength);
+  const double height_m = table.numberOr("height_m", kUsualHeight_m, kVolumeLength);
+  volume.half_size_m = {radius_m, radius_m, height_m / 2};
+  return volume;
+}
+
+/// A newer file still starts the box: what it adds is ignored and named.
+void checkFormat(const TomlTable& root) {
+  const std::int64_t format = root.integer("format", {1, std::numeric_limits<int>::max(), ""});
+  if (format > kNewestFormat)
+    root.warn("format", "format " + std::to_string(format) + " is newer than this version's " +
+                            std::to_string(kNewestFormat) +
+                            ": what it adds is ignored; update the appliance");
+}
+
+std::expected<Rig, std::string> readRig(const TomlFile& file, hal::PixelFormat usual_format) {
   const TomlTable root = file.root();
-  // The format comes first: a newer file may well hold keys that are unknown here.
-  const std::int64_t format = root.integer("format");
-  if (root.has("format") && format != kFormat)
-    root.fail("format", "format " + std::to_string(format) +
-                            " is not known here, only format 1; update the appliance or convert "
-                            "the file");
-  root.allowKeys(
-      {"format", "name", "target_m", "reference_focal_px", "reference_distance_m", "camera"});
+  checkFormat(root);
+  root.warnUnknownKeys({"format", "name", "target_m", "target_volume", "reference_focal_px",
+                        "reference_distance_m", "camera"});
 
   Rig rig;
   rig.name = root.textOr("name", "");
   const auto target_m = root.numbers<3>("target_m", kLength);
   rig.target_m = Eigen::Map<const Eigen::Vector3d>(target_m.data());
+  rig.target_volume = readTargetVolume(root.table("target_volume"));
   rig.reference_focal_px =
       root.has("reference_focal_px") ? root.number("reference_focal_px", kFocal) : 0;
   rig.reference_distance_m =
@@ -147,31 +242,34 @@ std::expected<Rig, std::string> readRig(const TomlFile& file) {
                             std::to_string(kMaxCameras) + " are possible; remove some");
   for (TomlTable& table : tables) {
     if (file.fault()) break;
-    RigCamera camera = readCamera(table, rig.cameras.size() + 1);
+    RigCamera camera = readCamera(table, rig.cameras.size() + 1, usual_format);
     if (file.fault()) break;  // the checks below need sound numbers
     if (std::ranges::find(rig.cameras, camera.name, &RigCamera::name) != rig.cameras.end())
       table.fail("name", "the name is used twice; names must differ");
     checkTarget(table, camera, rig.target_m);
     checkLens(table, camera);
+    checkVignetting(table, camera);
     rig.cameras.push_back(std::move(camera));
   }
   if (file.fault()) return std::unexpected(*file.fault());
   fillReferences(rig);
+  rig.warnings = file.warnings();
   return rig;
 }
 
 }  // namespace
 
-std::expected<Rig, std::string> loadRig(const std::string& path) {
+std::expected<Rig, std::string> loadRig(const std::string& path, hal::PixelFormat usual_format) {
   const auto file = TomlFile::load(path);
   if (!file) return std::unexpected(file.error());
-  return readRig(*file);
+  return readRig(*file, usual_format);
 }
 
-std::expected<Rig, std::string> parseRig(std::string_view text, std::string name) {
+std::expected<Rig, std::string> parseRig(std::string_view text, std::string name,
+                                         hal::PixelFormat usual_format) {
   const auto file = TomlFile::parse(text, std::move(name));
   if (!file) return std::unexpected(file.error());
-  return readRig(*file);
+  return readRig(*file, usual_format);
 }
 
 }  // namespace appliance

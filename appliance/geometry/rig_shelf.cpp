@@ -18,6 +18,9 @@ std::string differenceOf(const RigCamera& running, const RigCamera& next) {
   if (next.width_px != running.width_px || next.height_px != running.height_px)
     return "sends " + sizeText(running) + " pixels, this rig says " + sizeText(next) +
            ": calibrate with the running size, or restart kagamid with this rig";
+  if (next.pixel_format != running.pixel_format)
+    return std::string("sends ") + hal::genicamName(running.pixel_format) + ", this rig says " +
+           hal::genicamName(next.pixel_format) + ": restart kagamid with this rig";
   return "";
 }
 

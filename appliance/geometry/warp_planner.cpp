@@ -10,7 +10,7 @@ std::optional<hal::WarpPlan> planWarp(const RigCamera& camera, const View& view,
   return hal::WarpPlan{.source = source,
                        .H_camera_display = view.H_camera_display,
                        .lens = camera.lens,
-                       .gain_rgb = camera.gain_rgb};
+                       .colour = camera.colour};
 }
 
 }  // namespace appliance

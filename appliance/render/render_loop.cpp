@@ -14,12 +14,11 @@ namespace {
 constexpr double kShareOfPictures = 0.6;
 constexpr std::size_t kReadyKnownAfter = 8;  // frames
 
-hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
-                          hal::PixelFormat format) {
+hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera) {
   return {.pixels = frame.pixels,
           .width_px = camera.width_px,
           .height_px = camera.height_px,
-          .format = format,
+          .format = camera.pixel_format,
           .dma_buf = frame.dma_buf};
 }
 
@@ -28,14 +27,12 @@ hal::SourceImage sourceOf(const PinnedFrame& frame, const RigCamera& camera,
 RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& parameters)
     : parts_(parts),
       parameters_(parameters),
-      view_{.width_px = 0, .height_px = 0, .zoom = parameters.zoom},
       target_(parts.target),
       hold_(parts.frames),
       director_(parameters.director),
-      views_(parts.rig.cameras.size()),
-      allowance_(kShareOfPictures, parameters.trigger_period) {
-  director_.setArc(arcOf(parts.rig));
-}
+      views_(parameters.zoom),
+      sighted_(hold_, views_),
+      allowance_(kShareOfPictures, parameters.trigger_period) {}
 
 void RenderLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
@@ -59,9 +56,13 @@ rt::Timestamp RenderLoop::nextWake(rt::Timestamp now) const noexcept {
 void RenderLoop::turn() noexcept {
   const rt::Timestamp wake = rt::now();
   takeCommands();
+  const RigPin rig = parts_.rigs.newest();  // one for all of this picture
+  if (rig.revision() != on_arc_) director_.setArc(arcOf(*rig));
+  on_arc_ = rig.revision();
   Wanted wanted;
+  wanted.rig = rig.revision();
   wanted.picture = presentationOf(wake, parts_.display.timing());
-  wanted.shot = director_.tick(wanted.picture, parameters_.trigger_period, hold_,
+  wanted.shot = director_.tick(wanted.picture, parameters_.trigger_period, sighted_,
                                std::span(commands_).first(command_count_));
   command_count_ = 0;
   hold_.keep(wanted.shot.hold);
@@ -77,7 +78,7 @@ void RenderLoop::turn() noexcept {
   if (frame) wanted.trigger_edge = frame->frame.trigger_edge;
   wanted.target_point_begin = rt::now();
   wanted.exposure_middle = exposureMiddle(wanted.trigger_edge);
-  const Eigen::Vector3d& rig_m = parts_.rig.target_m;
+  const Eigen::Vector3d& rig_m = rig->target_m;
   wanted.target = target_.at(wanted.exposure_middle, {rig_m.x(), rig_m.y(), rig_m.z()});
   wanted.target_point_end = rt::now();
   parts_.board.shown_camera.store(wanted.shot.camera_shown, std::memory_order_relaxed);
@@ -85,7 +86,7 @@ void RenderLoop::turn() noexcept {
   followScreen();
   const bool visible = counters_.screen.state == hal::ScreenState::kShowing;
   if (visible && ready && !onScreen(wanted, wake) && mayDraw(wanted, wake) &&
-      show(wanted, frame, wake)) {
+      show(wanted, rig, frame, wake)) {
     on_screen_ = wanted;
     shown_at_ = wake;
     stale_ = false;
@@ -157,7 +158,7 @@ bool RenderLoop::onScreen(const Wanted& wanted, rt::Timestamp now) const noexcep
          wanted.shot.trigger == on_screen_.shot.trigger &&
          wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
          (wanted.overlay == on_screen_.overlay || overlay_waits) &&
-         !looksDifferent(on_screen_.target, wanted.target);
+         !looksDifferent(on_screen_.target, wanted.target) && wanted.rig == on_screen_.rig;
 }
 
 rt::Timestamp RenderLoop::exposureMiddle(rt::Timestamp edge) const noexcept {
@@ -184,14 +185,15 @@ void RenderLoop::evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept {
   const hal::SourceImage& source = plan.source;
   const std::size_t bytes = std::size_t{source.width_px} * source.height_px;
   const double luminance =
-      backgroundLuminance({source.pixels, bytes}, source.width_px, source.height_px);
+      backgroundLuminance({source.pixels, bytes}, source.width_px, source.height_px) -
+      double{plan.colour.black_level};
   const float gain = flicker_.gain(camera, luminance);
-  for (float& colour : plan.gain_rgb) colour *= gain;
+  for (float& colour : plan.colour.gain_rgb) colour *= gain;
   counters_.flicker = flicker_.report();
 }
 
-bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& frame,
-                      rt::Timestamp wake) noexcept {
+bool RenderLoop::show(const Wanted& wanted, const RigPin& rig,
+                      const std::optional<PinnedFrame>& frame, rt::Timestamp wake) noexcept {
   const Shot& shot = wanted.shot;
   PictureRecord record{.picture_id = picture_id_ + 1,
                        .mode = shot.mode,
@@ -208,13 +210,11 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
     record.target_point_end = wanted.target_point_end;
     record.homographies_begin = rt::now();
     const hal::DisplayMode mode = parts_.display.mode();
-    view_.width_px = mode.width_px;
-    view_.height_px = mode.height_px;
-    computeViews(parts_.rig, wanted.target.point.vector(), view_, views_);
+    views_.update(rig, mode.width_px, mode.height_px, wanted.target.point.vector());
+    noteViews();
     record.homographies_end = rt::now();
-    const RigCamera& camera = parts_.rig.cameras[shot.camera_shown];
-    const auto plan = planWarp(camera, views_[shot.camera_shown],
-                               sourceOf(*frame, camera, parameters_.pixel_format));
+    const auto plan =
+        views_.plan(rig, shot.camera_shown, sourceOf(*frame, rig->cameras[shot.camera_shown]));
     if (plan) {
       scene.layers[scene.count++] = {.plan = *plan,
                                      .content = hal::contentOf(shot.camera_shown, shot.trigger)};
@@ -254,6 +254,16 @@ bool RenderLoop::show(const Wanted& wanted, const std::optional<PinnedFrame>& fr
     parts_.observer->onPicture({.record = record, .scene = scene});
   }
   return true;
+}
+
+void RenderLoop::noteViews() noexcept {
+  counters_.blind = 0;
+  for (std::uint32_t i = 0; i < parts_.frames.cameras(); ++i) {
+    if (views_.sight(i) == Sight::kNone) counters_.blind |= std::uint64_t{1} << i;
+  }
+  if (!views_.cover()) return;
+  counters_.cover_worst = views_.cover()->worst;
+  counters_.cover_needed = views_.cover()->needed[counters_.cover_worst];
 }
 
 void RenderLoop::noteReady(const StoredFrame& frame) noexcept {

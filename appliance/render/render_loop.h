@@ -11,9 +11,9 @@
 #include "appliance/director/command_inbox.h"
 #include "appliance/director/director.h"
 #include "appliance/director/shown_board.h"
-#include "appliance/geometry/homography.h"
-#include "appliance/geometry/rig.h"
+#include "appliance/geometry/rig_shelf.h"
 #include "appliance/geometry/target_track.h"
+#include "appliance/geometry/view_set.h"
 #include "appliance/light/flicker.h"
 #include "appliance/overlay/overlay_board.h"
 #include "appliance/render/locked_vblanks.h"
@@ -21,6 +21,7 @@
 #include "appliance/render/picture_observer.h"
 #include "appliance/render/render_allowance.h"
 #include "appliance/render/render_metrics.h"
+#include "appliance/render/sighted_views.h"
 #include "appliance/render/stored_frames.h"
 #include "appliance/trace/trace_writer.h"
 #include "hal/display.h"
@@ -33,6 +34,9 @@ namespace appliance {
 struct RenderStatus {
   Shot shot;
   hal::ScreenStatus screen;
+  std::uint64_t blind = 0;  ///< a bit for each camera that does not have the target in its picture
+  std::uint32_t cover_worst = 0;  ///< the camera that needs most zoom to cover the screen
+  double cover_needed = 0;        ///< that zoom; 0: the zoom is fixed
   FlickerReport flicker;          ///< of the light; nothing but zeros without compensation
   Target target;                  ///< of the shown moment
   rt::Timestamp exposure_middle;  ///< of the shown moment; the epoch: not known
@@ -40,7 +44,7 @@ struct RenderStatus {
 
 /// Everything the render loop works with; all outlives it.
 struct RenderParts {
-  const Rig& rig;
+  RigShelf& rigs;
   StoredFrames& frames;  ///< by a reader that may pin RenderLoop::kPinsPerCamera
   CaptureBoard& board;
   CommandInbox& commands;
@@ -55,8 +59,7 @@ struct RenderParts {
 struct RenderParameters {
   rt::Nanoseconds trigger_period;
   rt::Nanoseconds edge_to_exposure_middle{0};  ///< opto delay, and half of the exposure
-  double zoom = 1;
-  hal::PixelFormat pixel_format = hal::PixelFormat::kBayerRG8;
+  std::optional<double> zoom;                  ///< none: the smallest that leaves no border
   DirectorParameters director;
   bool flicker_compensation = false;
 };
@@ -96,6 +99,7 @@ class RenderLoop {
     std::uint64_t overlay = 0;   // its generation
     rt::Timestamp exposure_middle;
     Target target;
+    std::uint64_t rig = 0;  // its revision
     rt::Timestamp target_point_begin;
     rt::Timestamp target_point_end;
   };
@@ -108,9 +112,10 @@ class RenderLoop {
   void sayWhatIsShown(const Shot& shot) noexcept;
   [[nodiscard]] rt::Timestamp exposureMiddle(rt::Timestamp edge) const noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted, rt::Timestamp now) const noexcept;
-  [[nodiscard]] bool show(const Wanted& wanted, const std::optional<PinnedFrame>& frame,
-                          rt::Timestamp wake) noexcept;
+  [[nodiscard]] bool show(const Wanted& wanted, const RigPin& rig,
+                          const std::optional<PinnedFrame>& frame, rt::Timestamp wake) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
+  void noteViews() noexcept;
   void noteReady(const StoredFrame& frame) noexcept;
   void evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept;
   void recordFlips() noexcept;
@@ -118,11 +123,12 @@ class RenderLoop {
 
   const RenderParts parts_;
   const RenderParameters parameters_;
-  ViewParameters view_;  // of the screen's present mode
   TargetReader target_;
   MomentHold hold_;
   Director director_;
-  std::vector<View> views_;  // of every camera
+  ViewSet views_;
+  SightedViews sighted_;
+  std::uint64_t on_arc_ = 0;  // the revision whose arc the director has
 
   // Since the last picture.
   std::array<Command, kMostCommands> commands_{};

@@ -7,6 +7,7 @@
 #include "appliance/box/shared.h"
 #include "appliance/capture/camera_settings.h"
 #include "appliance/config/durations.h"
+#include "appliance/geometry/coverage_text.h"
 #include "appliance/metrics/rate_meter.h"
 #include "appliance/render/history_views.h"
 #include "appliance/render/render_loop.h"
@@ -21,7 +22,7 @@ std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
 }
 
 RenderParts partsOf(const Shared& shared, StoredFrames& frames) {
-  return {.rig = shared.rig,
+  return {.rigs = shared.rigs,
           .frames = frames,
           .board = shared.board,
           .commands = shared.commands,
@@ -38,7 +39,6 @@ RenderParameters parametersOf(const Config& config) {
           .edge_to_exposure_middle =
               microseconds(commonDelay_us(config.cameras) + config.cameras.exposure_us / 2),
           .zoom = config.display.zoom,
-          .pixel_format = config.cameras.pixel_format,
           .director = {.sweep_views_per_second = config.director.sweep_views_per_s,
                        .delay_ladder = delayLadder(config.director),
                        .idle_home = microseconds(config.director.idle_home_s * 1e6)},
@@ -102,6 +102,7 @@ class RenderPart final : public Part {
     status.source_path = source_path_;
     status.screen = render.screen.state;
     status.screen_message = render.screen.message.data();
+    reportViews(render, status);
     if (shared_.config.display.flicker_compensation)
       status.sections.push_back({.key = "light", .line = flickerText(render.flicker)});
   }
@@ -113,6 +114,18 @@ class RenderPart final : public Part {
   }
 
  private:
+  void reportViews(const RenderStatus& render, Status& status) const {
+    const RigPin rig = shared_.rigs.newest();
+    if (std::string warning = coverWarning(*rig, render.cover_worst, render.cover_needed);
+        !warning.empty())
+      status.degraded.push_back({.key = "picture", .text = std::move(warning)});
+    for (std::size_t i = 0; i < rig->cameras.size(); ++i) {
+      if ((render.blind >> i & 1U) == 0) continue;
+      status.degraded.push_back(
+          {.key = "view " + std::to_string(i + 1), .text = blindLine(*rig, i)});
+    }
+  }
+
   const Shared& shared_;
   const std::string renderer_;
   const std::string source_path_;

@@ -13,7 +13,7 @@ std::expected<Site, std::string> loadSite(const std::string& config_file,
                                           const std::vector<double>& target_m) {
   auto config = loadConfig(config_file, overrides);
   if (!config) return std::unexpected(config.error());
-  auto rig = loadRig(config->rig.file);
+  auto rig = loadRig(config->rig.file, config->cameras.pixel_format);
   if (!rig) return std::unexpected(rig.error());
   if (!target_m.empty()) rig->target_m = {target_m[0], target_m[1], target_m[2]};
   if (auto fits = checkTogether(*config, *rig); !fits) return std::unexpected(fits.error());
@@ -21,6 +21,7 @@ std::expected<Site, std::string> loadSite(const std::string& config_file,
   if (!fitted) return std::unexpected(fitted.error());
   std::vector<std::string> warnings = fitted->config.warnings;
   Site site{std::move(fitted->config), std::move(*rig), std::move(warnings)};
+  site.degraded.insert(site.degraded.end(), site.rig.warnings.begin(), site.rig.warnings.end());
   if (!fitted->lowered.empty()) site.degraded.push_back(std::move(fitted->lowered));
   return site;
 }

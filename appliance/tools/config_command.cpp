@@ -25,6 +25,8 @@ void addConfigCommand(CLI::App& kagami) {
   check->callback([options] {
     const auto loaded = loadConfig(options->file, options->overrides);
     if (!loaded) fail(loaded.error());
+    for (const std::string& warning : loaded->warnings)
+      std::fprintf(stderr, "kagami: warning: %s\n", warning.c_str());
     std::printf("%s: valid\n", options->file.c_str());
   });
 

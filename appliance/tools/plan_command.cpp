@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "appliance/geometry/coverage_text.h"
 #include "appliance/geometry/rig_file.h"
 #include "appliance/network/uplink_text.h"
 #include "appliance/site/site_light.h"
@@ -22,11 +23,23 @@ struct Options {
   std::optional<std::uint32_t> cameras, width_px, height_px, packet_size_bytes;
   std::optional<double> rate_hz, camera_link_gbps, exposure_us, mains_hz;
   std::vector<std::string> uplinks;
+  std::string screen = "1920x1080";
 };
+
+/// "1920x1080"
+ViewParameters screenOf(const std::string& text) {
+  ViewParameters screen;
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%5ux%5u%c", &screen.width_px, &screen.height_px, &end) != 2 ||
+      screen.width_px == 0 || screen.height_px == 0)
+    fail("--screen " + text + ": not of the form WIDTHxHEIGHT, such as 1920x1080");
+  return screen;
+}
 
 struct Site {
   NetworkWish network;
   LightWish light;
+  std::vector<std::string> picture;  ///< what the screen shows; empty without a rig
 };
 
 /// Of the configuration and its rig, where one is named.
@@ -37,6 +50,10 @@ Site configuredSite(const Options& options) {
   if (!config) fail(config.error());
   const auto rig = loadRig(config->rig.file);
   if (!rig) fail(rig.error());
+  for (const std::string& warning : rig->warnings)
+    std::fprintf(stderr, "kagami: warning: %s\n", warning.c_str());
+  const ViewParameters screen = screenOf(options.screen);
+  site.picture = coverLines(*rig, screen.width_px, screen.height_px, config->display.zoom);
   site.network = networkWish(*config, *rig);
   site.light = lightWish(*config, *rig);
   return site;
@@ -122,6 +139,8 @@ void plan(const Options& options) {
   }
   std::printf("\n");
   for (const std::string& line : lightLines(site.light)) std::printf("%s\n", line.c_str());
+  if (!site.picture.empty()) std::printf("\n");
+  for (const std::string& line : site.picture) std::printf("%s\n", line.c_str());
   if (judged && !possible) throw CommandFailed();
 }
 
@@ -130,7 +149,9 @@ void plan(const Options& options) {
 void addPlanCommand(CLI::App& kagami) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = kagami.add_subcommand(
-      "plan", "Say what the network can carry, and what the light does to the exposure");
+      "plan",
+      "Say what the network can carry, what the light does to the exposure, and how the pictures "
+      "fill the screen");
   command->footer(
       "buffer: what the switch must hold for one uplink; undelayed: the same without the packet\n"
       "delay. Without options for them, --config's values are planned, else 20 cameras of "
@@ -152,6 +173,8 @@ void addPlanCommand(CLI::App& kagami) {
       ->allow_extra_args(false);
   command->add_option("--camera-link", options->camera_link_gbps, "of each camera, in Gb/s")
       ->check(CLI::Range(0.1, 100.0));
+  command->add_option("--screen", options->screen, "its size in pixels, as it hangs")
+      ->capture_default_str();
   command->add_option("--exposure-us", options->exposure_us)->check(CLI::Range(1.0, 1e6));
   command->add_option("--mains", options->mains_hz, "50 or 60 Hz")->check(CLI::Range(10.0, 100.0));
   command->callback([options] { plan(*options); });

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -17,6 +18,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::require(std::isfinite(rig->reference_focal_px) && rig->reference_focal_px > 0 &&
                     std::isfinite(rig->reference_distance_m) && rig->reference_distance_m > 0,
                 "the references are lengths");
+  fuzz::require(
+      rig->target_volume.centre_m.allFinite() && rig->target_volume.half_size_m.minCoeff() >= 0,
+      "the target volume has a size");
+  for (const std::string& warning : rig->warnings) fuzz::requireOneLine(warning);
   for (const appliance::RigCamera& camera : rig->cameras) {
     const Eigen::Matrix3d& R = camera.R_cam_rig;
     fuzz::require(R.allFinite() && camera.t_cam_rig_m.allFinite(), "the pose is finite");
@@ -26,6 +31,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::require((R * rig->target_m + camera.t_cam_rig_m).z() > 0,
                   "the target lies in front of every camera");
     fuzz::require(camera.width_px > 0 && camera.height_px > 0, "pictures have a size");
+    const hal::ColourModel& colour = camera.colour;
+    fuzz::require(colour.black_level >= 0 && colour.black_level < 255, "white is above black");
+    fuzz::require(
+        std::ranges::all_of(colour.matrix, [](float x) { return std::isfinite(x); }) &&
+            std::ranges::all_of(colour.vignetting, [](float x) { return std::isfinite(x); }),
+        "colours are finite");
   }
   return 0;
 }

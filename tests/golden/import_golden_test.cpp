@@ -59,7 +59,7 @@ hal::WarpPlan planOf(const hal::SourceImage& source) {
                .cy_px = (source.height_px - 1) / 2.0,
                .distortion = {-0.12, 0.03, 0.001, -0.0008, 0},
                .max_radius = std::numeric_limits<double>::infinity()};
-  plan.gain_rgb = {1.4F, 1.0F, 0.8F};
+  plan.colour.gain_rgb = {1.4F, 1.0F, 0.8F};
   return plan;
 }
 

@@ -29,6 +29,9 @@ Lookup lookUp(const hal::WarpPlan& plan, double x_px, double y_px) {
   return {true, lens.fx_px * xd + lens.cx_px, lens.fy_px * yd + lens.cy_px};
 }
 
+/// Dark grey, the sRGB code 18, in linear light.
+const double kSurround = std::pow((18.0 / 255 + 0.055) / 1.055, 2.4);
+
 double encodeSrgb(double linear) {
   const double c = std::clamp(linear, 0.0, 1.0);
   return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
@@ -42,9 +45,39 @@ cv::Vec3f encoded(const cv::Vec3f& linear) {
   return code;
 }
 
+/// From the stored value at a pixel of the source to linear light, in the order of
+/// hal::ColourModel.
+cv::Vec3f developed(const hal::WarpPlan& plan, const cv::Vec3f& stored, double u_px, double v_px) {
+  const hal::ColourModel& colour = plan.colour;
+  const double half_diagonal = std::hypot(plan.source.width_px, plan.source.height_px) / 2;
+  const double r = std::hypot(u_px - plan.lens.cx_px, v_px - plan.lens.cy_px) / half_diagonal;
+  const double fall_off = 1 + colour.vignetting[0] * std::pow(r, 2) +
+                          colour.vignetting[1] * std::pow(r, 4) +
+                          colour.vignetting[2] * std::pow(r, 6);
+  cv::Vec3d balanced;
+  for (int c = 0; c < 3; ++c) {
+    const double code = 255 * double{stored[c]};
+    const double light = (code - double{colour.black_level}) / (255 - double{colour.black_level});
+    balanced[c] = light / fall_off * double{colour.gain_rgb[static_cast<std::size_t>(c)]};
+  }
+  cv::Vec3f rgb;
+  for (std::size_t row = 0; row < 3; ++row) {
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      sum += double{colour.matrix[3 * row + c]} * balanced[static_cast<int>(c)];
+    rgb[static_cast<int>(row)] = static_cast<float>(std::max(0.0, sum));
+  }
+  return rgb;
+}
+
+float shownAt(const hal::EdgeMask& edge, double u, double v) {
+  const double in = std::clamp((1 - edge.at(u, v)) / double{hal::EdgeMask::kFeather}, 0.0, 1.0);
+  return static_cast<float>(in * in * (3 - 2 * in));
+}
+
 struct LinearView {
-  cv::Mat3f light;   // with gains, weighed by cover
-  cv::Mat1f cover;   // 0 to 1: the part of the lookup that lies in the source
+  cv::Mat3f light;   // weighed by cover
+  cv::Mat1f cover;   // 0 to 1: the part of the lookup in the source, times the soft edge
   cv::Mat1b inside;  // as in ReferencePicture
   cv::Mat1b border;
 };
@@ -75,13 +108,19 @@ LinearView warpLinear(const hal::WarpPlan& plan, const cv::Mat3b& linear_rgb, cv
       if (inside) view.inside(y, x) = 255;
     }
   }
-  const auto& [red, green, blue] = plan.gain_rgb;
-  cv::Mat3f linear;
-  linear_rgb.convertTo(linear, CV_32FC3, 1.0 / 255);
-  for (cv::Vec3f& pixel : linear) pixel = pixel.mul(cv::Vec3f(red, green, blue));
+  cv::Mat3f stored;
+  linear_rgb.convertTo(stored, CV_32FC3, 1.0 / 255);
   const cv::Mat1f full(linear_rgb.size(), 1.0F);
-  cv::remap(linear, view.light, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  cv::remap(stored, view.light, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   cv::remap(full, view.cover, map_x, map_y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  for (int y = 0; y < display.height; ++y) {
+    for (int x = 0; x < display.width; ++x) {
+      view.cover(y, x) *=
+          shownAt(plan.edge, (2 * x + 1.0) / display.width - 1, (2 * y + 1.0) / display.height - 1);
+      view.light(y, x) =
+          developed(plan, view.light(y, x), map_x(y, x), map_y(y, x)) * view.cover(y, x);
+    }
+  }
   return view;
 }
 
@@ -91,12 +130,21 @@ ReferencePicture referenceWarp(const hal::WarpPlan& plan, const cv::Mat3b& linea
                                cv::Size display) {
   const LinearView view = warpLinear(plan, linear_rgb, display);
   ReferencePicture picture{.rgb = cv::Mat3f(display), .inside = view.inside, .border = view.border};
-  std::transform(view.light.begin(), view.light.end(), picture.rgb.begin(), encoded);
+  const cv::Vec3f surround = cv::Vec3f::all(static_cast<float>(kSurround));
+  for (int y = 0; y < display.height; ++y) {
+    for (int x = 0; x < display.width; ++x) {
+      const float cover = view.cover(y, x);
+      cv::Vec3f light = view.light(y, x);
+      for (int c = 0; c < 3; ++c) light[c] = std::min(light[c], cover);
+      picture.rgb(y, x) = encoded(light + (1 - cover) * surround);
+    }
+  }
   return picture;
 }
 
 cv::Mat3f referenceScene(std::span<const ReferenceLayer> layers, cv::Size display) {
-  cv::Mat3f sum(display, cv::Vec3f(0, 0, 0));
+  const auto surround = static_cast<float>(kSurround);
+  cv::Mat3f sum(display, cv::Vec3f(surround, surround, surround));
   for (const auto& [layer, linear_rgb] : layers) {
     const LinearView view = warpLinear(layer.plan, linear_rgb, display);
     const hal::RectPx where = common(layer.where, {0, 0, display.width, display.height});

@@ -7,7 +7,8 @@
 #include "hal/scene.h"
 
 /// The same picture as the renderer's by another way: every pixel's backward map in double,
-/// bilinear in linear light by cv::remap on floats, and the sRGB formula itself.
+/// bilinear by cv::remap on floats, the colour model pixel by pixel in double, the soft edge, and
+/// the sRGB formula itself.
 struct ReferencePicture {
   cv::Mat3f rgb;     ///< encoded, 0 to 255
   cv::Mat1b inside;  ///< 255 where the lookup's whole footprint lies in the source
@@ -23,8 +24,8 @@ struct ReferenceLayer {
   const cv::Mat3b& linear_rgb;
 };
 
-/// Layers over black, in float and linear light, each with its rectangle, opacity and the part of
-/// a pixel that its camera sees; then the sRGB formula itself. 0 to 255.
+/// Layers over the surround, in float and linear light, each with its rectangle, opacity and the
+/// part of a pixel that its camera sees; then the sRGB formula itself. 0 to 255.
 cv::Mat3f referenceScene(std::span<const ReferenceLayer> layers, cv::Size display);
 
 /// In dB over the pixels of @p mask, all channels.

@@ -22,7 +22,7 @@ class SceneGolden : public testing::Test {
   SceneGolden() {
     first_.look(0.9, 0.05, 0.1);
     second_.look(0.8, -0.2, -0.1);
-    second_.plan.gain_rgb = {0.5F, 0.9F, 1.6F};  // some of it clips
+    second_.plan.colour.gain_rgb = {0.5F, 0.9F, 1.6F};  // some of it clips
   }
 
   static hal::ViewLayer layer(const Camera& camera, const hal::RectPx& where = hal::kWholePicture,

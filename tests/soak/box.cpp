@@ -86,14 +86,15 @@ std::expected<void, std::string> Box::startDaemon() {
     addresses += (i == 0 ? "\"127.0.0." : ", \"127.0.0.") + std::to_string(i + 1) + "\"";
   double refresh_hz = options_.rate_hz;  // a multiple of the rate: every set has its picture
   while (refresh_hz < kSlowestScreen_hz) refresh_hz += options_.rate_hz;
-  std::ofstream(config) << "[rig]\nfile = \"" << (options_.folder / "rig.toml").string()
-                        << "\"\n[cameras]\naddresses = [" << addresses
-                        << "]\n[trigger]\nrate_hz = " << options_.rate_hz
-                        << "\ngenlock = false\n[display]\nwidth_px = 640\nheight_px = 360\n"
-                        << "refresh_hz = " << refresh_hz << "\n[state]\ndirectory = \""
-                        << (options_.folder / "state").string() << "\"\ntrace = \""
-                        << tracePath(options_.folder).string() << "\"\n[control]\nbus = \""
-                        << busAddress() << "\"\nname = \"" << kName << "\"\n";
+  std::ofstream(config)
+      << "[rig]\nfile = \"" << (options_.folder / "rig.toml").string()
+      << "\"\n[cameras]\naddresses = [" << addresses
+      << "]\n[trigger]\nrate_hz = " << options_.rate_hz
+      << "\ngenlock = false\n[display]\nzoom = 1\nwidth_px = 640\nheight_px = 360\n"
+      << "refresh_hz = " << refresh_hz << "\n[state]\ndirectory = \""
+      << (options_.folder / "state").string() << "\"\ntrace = \""
+      << tracePath(options_.folder).string() << "\"\n[control]\nbus = \"" << busAddress()
+      << "\"\nname = \"" << kName << "\"\n";
   daemon_ = std::make_unique<test::ChildProcess>(
       std::vector<std::string>{options_.programs / "kagamid", "--config", config}, log,
       test::ProcessGroup::kOwn);

@@ -44,6 +44,7 @@ std::vector<std::string> kagamidCommand(const CameraNetwork& network,
                                "trigger.rate_hz=10",
                                "history.sets=40",
                                "display.refresh_hz=20",
+                               "display.zoom=1",  // the whole frame, its stamp included
                                "control.bus=none"};
   all.insert(all.end(), settings.begin(), settings.end());
   std::vector<std::string> command{KAGAMID, "--config", KAGAMID_CONFIG};

@@ -115,6 +115,7 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "depth_sensor.repeat=false",
                                           "director.delay_ladder_s=[1,2]",
                                           "director.sweep_views_per_s=5",
+                                          "director.idle_home_s=60",
                                           "record.directory=/x",
                                           "record.video_hz=10",
                                           "record.video_width_px=320",
@@ -153,12 +154,21 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
   EXPECT_EQ(tried, std::set<std::string>(keys.begin(), keys.end()));
 }
 
-TEST(Config, RefusesAnUnknownKeyWithLineAndSuggestion) {
-  EXPECT_THAT(
-      faultOf("[trigger]\nrate_hz = 40\n\n[display]\nwidht_px = 800\n"),
-      AllOf(StartsWith("kagamid.toml:5: "), HasSubstr("widht_px"), HasSubstr("\"width_px\"?")));
-  EXPECT_THAT(faultOf("[triger]\nrate_hz = 40\n"),
-              AllOf(StartsWith("kagamid.toml:1: "), HasSubstr("\"trigger\"?")));
+TEST(Config, IgnoresAnUnknownKeyOfTheFileAndSaysLineAndSuggestion) {
+  const auto config = parseConfig(
+      "[trigger]\nrate_hz = 50\n\n[display]\nwidht_px = 800\n[triger]\n", "kagamid.toml");
+  ASSERT_TRUE(config.has_value()) << config.error();
+  EXPECT_EQ(config->trigger.rate_hz, 50);
+  EXPECT_THAT(config->warnings,
+              testing::UnorderedElementsAre(
+                  AllOf(StartsWith("kagamid.toml:5: "), HasSubstr("widht_px"),
+                        HasSubstr("\"width_px\"?")),
+                  AllOf(StartsWith("kagamid.toml:6: "), HasSubstr("\"trigger\"?"))));
+}
+
+TEST(Config, RefusesAnUnknownKeyThatAPersonTyped) {
+  EXPECT_THAT(faultOf("", {"display.widht_px=800"}),
+              AllOf(StartsWith("--set display.widht_px=800: "), HasSubstr("\"width_px\"?")));
 }
 
 TEST(Config, AcceptsAKeyOfAnEarlierVersionAndSaysThatItHasNoEffect) {
@@ -186,6 +196,20 @@ TEST(Config, RefusesWrongTypesAndRangesInOneLine) {
   EXPECT_THAT(faultOf("[realtime.render]\npriority = 0"), HasSubstr("priority must be 1 to 99"));
   EXPECT_THAT(faultOf("[rig]\nfile = \"\""), HasSubstr("must not be empty"));
   EXPECT_EQ(faultOf("[rig]\nfile = \"\"").find('\n'), std::string::npos);
+}
+
+TEST(Config, TakesCoverOrANumberAsTheZoom) {
+  const auto zoomOf = [](const std::string& text) {
+    const auto config = parseConfig(text, "kagamid.toml");
+    EXPECT_TRUE(config.has_value()) << config.error();
+    return config ? config->display.zoom : std::optional<double>(-1);
+  };
+  EXPECT_EQ(zoomOf(""), std::nullopt);
+  EXPECT_EQ(zoomOf("[display]\nzoom = \"cover\""), std::nullopt);
+  EXPECT_EQ(zoomOf("[display]\nzoom = 1.5"), 1.5);
+  EXPECT_THAT(faultOf("[display]\nzoom = \"fill\""),
+              HasSubstr("zoom must be a number or \"cover\", not \"fill\""));
+  EXPECT_THAT(faultOf("[display]\nzoom = 0.01"), HasSubstr("zoom must be from 0.1 to 20"));
 }
 
 TEST(Config, RefusesKeysThatContradictEachOther) {
@@ -220,8 +244,10 @@ TEST(Config, GivesAModelItsOwnResendsAndTheCommonOnesForTheRest) {
   EXPECT_FALSE(config->resend.models[1].policy.enabled);
 
   EXPECT_THAT(faultOf("[[resend.model]]\npacket_timeout_us = 8000"), HasSubstr("name"));
-  EXPECT_THAT(faultOf("[[resend.model]]\nname = \"a\"\npacket_timout_us = 8000"),
-              HasSubstr("\"packet_timeout_us\"?"));
+  const auto misspelt =
+      parseConfig("[[resend.model]]\nname = \"a\"\npacket_timout_us = 8000", "f");
+  ASSERT_TRUE(misspelt.has_value()) << misspelt.error();
+  EXPECT_THAT(misspelt->warnings, testing::ElementsAre(HasSubstr("\"packet_timeout_us\"?")));
   EXPECT_THAT(faultOf("[[resend.model]]\nname = \"a\"\n[[resend.model]]\nname = \"a\""),
               HasSubstr("stands twice"));
 }

@@ -110,7 +110,7 @@ TEST(RecordingScene, SaysWhatIsWrongWithAFolder) {
     return scene ? std::string("opened") : scene.error();
   };
   EXPECT_NE(error().find("rig.toml"), std::string::npos);
-  write(folder, "rig.toml", "format = 2\n");
+  write(folder, "rig.toml", "format = 0\n");
   EXPECT_NE(error().find("format = 1"), std::string::npos);
   write(folder, "rig.toml", "format = 1\n[[camera]]\nname = \"cam01\"\n");
   EXPECT_NE(error().find("rig.toml:2: "), std::string::npos) << error();

@@ -10,7 +10,9 @@ namespace {
 
 using appliance::parseRig;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::StartsWith;
 
 constexpr const char* kHead = "format = 1\nname = \"arc\"\ntarget_m = [0.0, 0.0, 1.0]\n";
@@ -66,8 +68,8 @@ TEST(RigFile, GivesEveryCameraInFileOrderWithItsCalibration) {
   EXPECT_EQ(first.lens.distortion, (std::array{0.1, -0.02, 0.001, -0.001, 0.01}));
   EXPECT_GT(first.lens.max_radius, 0.6);
   EXPECT_TRUE(first.centre_m().isApprox(Eigen::Vector3d(0, -4, 1)));
-  EXPECT_EQ(first.gain_rgb, (std::array{1.5F, 1.0F, 2.0F}));
-  EXPECT_EQ(rig->cameras[1].gain_rgb, (std::array{1.0F, 1.0F, 1.0F}));
+  EXPECT_EQ(first.colour.gain_rgb, (std::array{1.5F, 1.0F, 2.0F}));
+  EXPECT_EQ(rig->cameras[1].colour.gain_rgb, (std::array{1.0F, 1.0F, 1.0F}));
 }
 
 TEST(RigFile, TakesTheMeansAsReferencesUnlessTheyAreStated) {
@@ -98,20 +100,108 @@ TEST(RigFile, NamesTheLineOfASyntaxError) {
   EXPECT_THAT(errorOf("format = 1\nname = arc\n"), StartsWith("rig.toml:2: not valid TOML"));
 }
 
-TEST(RigFile, RefusesAnotherFormatBeforeAnythingElse) {
-  EXPECT_EQ(errorOf("shape = \"ring\"\nformat = 2\n"),
-            "rig.toml:2: format 2 is not known here, only format 1; update the appliance or "
-            "convert the file");
-  EXPECT_EQ(errorOf("name = \"arc\"\n"), "rig.toml:1: the key \"format\" is missing; add it");
-  EXPECT_EQ(errorOf("format = \"1\"\n"), "rig.toml:1: format must be a whole number, not text");
+/// The warnings of a rig that is accepted.
+std::vector<std::string> warningsOf(const std::string& text) {
+  const auto rig = parseRig(text, "rig.toml");
+  EXPECT_TRUE(rig.has_value()) << rig.error();
+  return rig ? rig->warnings : std::vector<std::string>{};
 }
 
-TEST(RigFile, RefusesUnknownKeysAndSuggestsTheClosest) {
+TEST(RigFile, ReadsANewerFormatAsFarAsItKnowsItAndSaysSo) {
+  const std::string head = "format = 3\nname = \"arc\"\ntarget_m = [0.0, 0.0, 1.0]\n";
+  EXPECT_THAT(warningsOf(head + "mirror = true\n" + camera("cam01")),
+              ElementsAre("rig.toml:1: format 3 is newer than this version's 2: what it adds is "
+                          "ignored; update the appliance",
+                          "rig.toml:4: unknown key \"mirror\"; it is ignored; another version may "
+                          "know it"));
+}
+
+TEST(RigFile, RefusesAFileThatStatesNoFormat) {
+  EXPECT_EQ(errorOf("name = \"arc\"\n"), "rig.toml:1: the key \"format\" is missing; add it");
+  EXPECT_EQ(errorOf("format = \"1\"\n"), "rig.toml:1: format must be a whole number, not text");
+  EXPECT_THAT(errorOf("format = 0\n"), StartsWith("rig.toml:1: format must be from 1 to"));
+}
+
+TEST(RigFile, IgnoresUnknownKeysAndNamesLineAndClosestKey) {
+  EXPECT_THAT(warningsOf(kHead + camera("cam01") + "blak_level = 4\n"),
+              ElementsAre("rig.toml:11: camera \"cam01\": unknown key \"blak_level\"; did you mean "
+                          "\"black_level\"?"));
+  EXPECT_THAT(warningsOf(kHead + camera("cam01")), IsEmpty());
+}
+
+TEST(RigFile, SaysWhatIsMissingWhereARequiredKeyIsMisspelt) {
   EXPECT_EQ(errorOf("format = 1\ntaget_m = [0, 0, 1]\n" + camera("cam01")),
-            "rig.toml:2: unknown key \"taget_m\"; did you mean \"target_m\"?");
-  EXPECT_EQ(errorWith("centre_px", "center_px = [639.5, 511.5]"),
-            "rig.toml:15: camera \"cam02\": unknown key \"center_px\"; did you mean "
-            "\"centre_px\"?");
+            "rig.toml:1: the key \"target_m\" is missing; add it");
+}
+
+TEST(RigFile, ChangesNoColourWithoutTheKeysOfFormat2) {
+  const auto rig = parseRig(kHead + camera("cam01"), "rig.toml");
+  ASSERT_TRUE(rig.has_value()) << rig.error();
+  EXPECT_EQ(rig->cameras[0].colour, hal::ColourModel{});
+  EXPECT_EQ(rig->cameras[0].pixel_format, hal::PixelFormat::kBayerRG8);
+}
+
+constexpr const char* kHead2 = "format = 2\nname = \"arc\"\ntarget_m = [0.0, 0.0, 1.0]\n";
+
+TEST(RigFile, GivesEveryCameraItsColourAndPixelFormat) {
+  const auto rig = parseRig(kHead2 + camera("cam01") +
+                                "pixel_format = \"BayerGB8\"\nblack_level = 4.5\n"
+                                "vignetting = [-0.3, 0.05]\n"
+                                "colour_matrix = [[1.5, -0.3, -0.2], [-0.2, 1.4, -0.2], "
+                                "[0, -0.5, 1.5]]\n" +
+                                camera("cam02"),
+                            "rig.toml");
+  ASSERT_TRUE(rig.has_value()) << rig.error();
+  EXPECT_THAT(rig->warnings, IsEmpty());
+  const appliance::RigCamera& first = rig->cameras[0];
+  EXPECT_EQ(first.pixel_format, hal::PixelFormat::kBayerGB8);
+  EXPECT_EQ(first.colour.black_level, 4.5F);
+  EXPECT_EQ(first.colour.vignetting, (std::array{-0.3F, 0.05F, 0.0F}));
+  EXPECT_EQ(first.colour.matrix,
+            (std::array{1.5F, -0.3F, -0.2F, -0.2F, 1.4F, -0.2F, 0.0F, -0.5F, 1.5F}));
+  EXPECT_EQ(rig->cameras[1].colour, hal::ColourModel{});
+  const auto grey = parseRig(kHead2 + camera("cam01"), "rig.toml", hal::PixelFormat::kMono8);
+  ASSERT_TRUE(grey.has_value()) << grey.error();
+  EXPECT_EQ(grey->cameras[0].pixel_format, hal::PixelFormat::kMono8);
+}
+
+TEST(RigFile, RefusesWrongColoursAndNamesTheLine) {
+  const auto with = [](const std::string& line) {
+    return errorOf(kHead2 + camera("cam01") + line + "\n");
+  };
+  EXPECT_EQ(with("pixel_format = \"Bayer\""),
+            "rig.toml:11: camera \"cam01\": pixel_format must be one of BayerRG8, BayerGB8, "
+            "BayerGR8, BayerBG8, Mono8, not \"Bayer\"");
+  EXPECT_THAT(with("black_level = 200"), HasSubstr("black_level must be from 0 to 127"));
+  EXPECT_THAT(with("colour_matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 99]]"),
+              HasSubstr("colour_matrix[2][2] must be from -16 to 16, not 99"));
+  EXPECT_THAT(with("vignetting = [-1.5]"), HasSubstr("vignetting leaves less than 5 %"));
+  EXPECT_THAT(with("vignetting = [0, 0, 0, 0]"), HasSubstr("up to 3 numbers"));
+}
+
+TEST(RigFile, HasACylinderAboutTheTargetAsTheUsualTargetVolume) {
+  const auto rig = parseRig(kHead + camera("cam01"), "rig.toml");
+  ASSERT_TRUE(rig.has_value()) << rig.error();
+  EXPECT_EQ(rig->target_volume.shape, appliance::TargetVolume::Shape::kCylinder);
+  EXPECT_EQ(rig->target_volume.centre_m, std::nullopt);
+  EXPECT_EQ(rig->target_volume.half_size_m, Eigen::Vector3d(0.1, 0.1, 0.1));
+}
+
+TEST(RigFile, ReadsATargetVolume) {
+  const std::string cylinder = "[target_volume]\nradius_m = 0.5\nheight_m = 1\n";
+  const auto round = parseRig(kHead2 + cylinder + camera("cam01"), "rig.toml");
+  ASSERT_TRUE(round.has_value()) << round.error();
+  EXPECT_EQ(round->target_volume.half_size_m, Eigen::Vector3d(0.5, 0.5, 0.5));
+  const std::string box = "[target_volume]\ncentre_m = [1, 0, 1]\nsize_m = [1, 4, 0.5]\n";
+  const auto square = parseRig(kHead2 + box + camera("cam01"), "rig.toml");
+  ASSERT_TRUE(square.has_value()) << square.error();
+  EXPECT_EQ(square->target_volume.shape, appliance::TargetVolume::Shape::kBox);
+  EXPECT_EQ(square->target_volume.centre_m, Eigen::Vector3d(1, 0, 1));
+  EXPECT_EQ(square->target_volume.half_size_m, Eigen::Vector3d(0.5, 2, 0.25));
+  EXPECT_THAT(errorOf(kHead2 + box + "radius_m = 1\n" + camera("cam01")),
+              HasSubstr("rig.toml:6: [target_volume]: size_m makes a box"));
+  EXPECT_THAT(errorOf(kHead2 + std::string("[target_volume]\nradius_m = -1\n") + camera("cam01")),
+              HasSubstr("radius_m must be from 0 to 100 m"));
 }
 
 TEST(RigFile, RefusesMissingKeysAndSaysOfWhichCamera) {

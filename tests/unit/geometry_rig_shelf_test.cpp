@@ -90,6 +90,9 @@ TEST(RigShelf, RefusesARigThatDoesNotFitTheRunningCameras) {
   smaller.cameras[19].height_px = 720;
   EXPECT_THAT(shelf.put(smaller).error(),
               HasSubstr("camera 20 sends 1280x1024 pixels, this rig says 1280x720"));
+  Rig grey = rigOf(2);
+  grey.cameras[0].pixel_format = hal::PixelFormat::kMono8;
+  EXPECT_THAT(shelf.put(grey).error(), HasSubstr("camera 1 sends BayerRG8, this rig says Mono8"));
   EXPECT_TRUE(isOne(*shelf.newest(), 1));
   EXPECT_EQ(shelf.revision(), 1u);
 }

@@ -16,7 +16,7 @@ class WarpPlanner : public testing::Test {
                    .width_px = 4,
                    .height_px = 2,
                    .lens = {.fx_px = 3, .fy_px = 3, .cx_px = 1.5, .cy_px = 0.5, .max_radius = 1},
-                   .gain_rgb = {1.5F, 1, 2}};
+                   .colour = {.gain_rgb = {1.5F, 1, 2}}};
   View view{.H_display_camera = {1, 0, 0, 0, 1, 0, 0, 0, 1},
             .H_camera_display = {1, 0, 5, 0, 1, 6, 0, 0, 1},
             .valid = true};
@@ -31,7 +31,7 @@ TEST_F(WarpPlanner, HandsOverTheSourceTheBackwardHomographyAndTheCalibration) {
   EXPECT_EQ(plan->H_camera_display, view.H_camera_display);
   EXPECT_EQ(plan->lens.fx_px, 3);
   EXPECT_EQ(plan->lens.max_radius, 1);
-  EXPECT_EQ(plan->gain_rgb, camera.gain_rgb);
+  EXPECT_EQ(plan->colour, camera.colour);
 }
 
 TEST_F(WarpPlanner, RefusesAViewThatIsNotValid) {

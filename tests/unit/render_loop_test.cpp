@@ -99,11 +99,9 @@ class NotingDisplay final : public TestDisplay {
 
 /// What a render loop without frames works with.
 struct Bench {
-  explicit Bench(hal::Display& display) : display(display) {
-    rig.cameras.push_back({.name = "only", .width_px = 64, .height_px = 64});
-  }
+  explicit Bench(hal::Display& display) : display(display) {}
   [[nodiscard]] RenderParts parts() {
-    return {.rig = rig,
+    return {.rigs = rigs,
             .frames = frames,
             .board = board,
             .commands = commands,
@@ -116,7 +114,7 @@ struct Bench {
   }
 
   hal::Display& display;
-  Rig rig;
+  RigShelf rigs{Rig{.cameras = {{.name = "only", .width_px = 64, .height_px = 64}}}};
   NoFrames frames;
   CaptureBoard board{1};
   CommandInbox commands{board.wake_render};

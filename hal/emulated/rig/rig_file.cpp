@@ -11,7 +11,7 @@
 namespace emulator {
 namespace {
 
-constexpr std::int64_t kFormat = 1;
+constexpr std::int64_t kFormat = 1;  // of what is written: it needs no key of a newer one
 constexpr std::int64_t kLargestSidePx = 16'384;
 
 /// What toml++ writes it can read again, at full precision: 1e11 as well as 0.1.
@@ -96,8 +96,9 @@ std::expected<RigModel, std::string> parseRigFile(std::string_view text,
     return std::unexpected(name.string() + ":" + std::to_string(error.source().begin.line) + ": " +
                            rt::printable(error.description()));
   }
-  if (root["format"].value_exact<std::int64_t>() != kFormat) {
-    return std::unexpected(name.string() + ": format = 1 is missing: not a rig this version reads");
+  // Names and sizes mean the same in every format.
+  if (root["format"].value_exact<std::int64_t>().value_or(0) < kFormat) {
+    return std::unexpected(name.string() + ": there is no format = 1 or newer: not a rig file");
   }
   RigModel rig;
   rig.name = root["name"].value_or(std::string());

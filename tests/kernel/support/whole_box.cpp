@@ -65,9 +65,9 @@ WholeBox::WholeBox(std::string folder)
         std::string("trigger.loopback_line=") + kLoopBackLine,
         std::string("trigger.rate_hz=15"),  // a quarter of the screen's
         std::string("history.sets=60"), std::string("display.backend=kms"),
-        std::string("display.mode=640x480"), std::string("director.sweep_views_per_s=2"),
-        std::string("panel.backend=gpiod"), "state.trace=" + path("trace.jsonl"),
-        std::string("control.bus=none")}) {
+        std::string("display.zoom=1"), std::string("display.mode=640x480"),
+        std::string("director.sweep_views_per_s=2"), std::string("panel.backend=gpiod"),
+        "state.trace=" + path("trace.jsonl"), std::string("control.bus=none")}) {
     command.insert(command.end(), {"--set", setting});
   }
   daemon_ = std::make_unique<ChildProcess>(command, path("kagamid.log"));
