@@ -84,6 +84,9 @@ ControlClient::Answer ControlClient::releaseTarget() {
 ControlClient::Answer ControlClient::freeze() {
   return withoutReply(call(kControlInterface, "Freeze", ""));
 }
+ControlClient::Answer ControlClient::thaw() {
+  return withoutReply(call(kControlInterface, "Thaw", ""));
+}
 ControlClient::Answer ControlClient::sweep() {
   return withoutReply(call(kControlInterface, "Sweep", ""));
 }

@@ -26,6 +26,7 @@ class ControlClient {
   [[nodiscard]] Answer setTarget(const std::array<double, 3>& target_m);
   [[nodiscard]] Answer releaseTarget();
   [[nodiscard]] Answer freeze();
+  [[nodiscard]] Answer thaw();
   [[nodiscard]] Answer sweep();
   /// Until takeScreen() or the end of this client.
   [[nodiscard]] Answer releaseScreen();

@@ -130,8 +130,11 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
     expectDone(connect(place).setTarget({(*target_m)[0], (*target_m)[1], (*target_m)[2]}));
   });
 
-  kagami.add_subcommand("freeze", "Stop at the shown moment; again: go on")->callback([&place] {
+  kagami.add_subcommand("freeze", "Stop at the shown moment")->callback([&place] {
     expectDone(connect(place).freeze());
+  });
+  kagami.add_subcommand("thaw", "Go on as before the stop")->callback([&place] {
+    expectDone(connect(place).thaw());
   });
   kagami.add_subcommand("sweep", "Walk through all views of the stopped moment")
       ->callback([&place] { expectDone(connect(place).sweep()); });

@@ -143,4 +143,24 @@ TEST_F(BusFlood, NeitherStarvesTheWatchdogNorLosesFramesNorHidesAStopSignal) {
               static_cast<long long>(heard_ms.count()));
 }
 
+TEST_F(BusFlood, TwentyFreezesAtOnceLeaveThePictureFrozen) {
+  startDaemon();
+  ASSERT_TRUE(becomes([](const auto& status) { return status["shown_hz"] > 0; }));
+  auto bus = appliance::openBus(busAddress());
+  ASSERT_TRUE(bus.has_value()) << bus.error();
+  for (int time = 0; time < 20; ++time) {
+    sd_bus_message* call = nullptr;
+    ASSERT_GE(sd_bus_message_new_method_call(bus->get(), &call, "org.kagami.Kagami1",
+                                             "/org/kagami/Kagami1", "org.kagami.Kagami1.Control",
+                                             "Freeze"),
+              0);
+    sd_bus_message_set_expect_reply(call, 0);
+    EXPECT_GE(sd_bus_send(bus->get(), call, nullptr), 0);
+    sd_bus_message_unref(call);
+  }
+  (void)sd_bus_flush(bus->get());
+  EXPECT_EQ(kagami({"freeze"}).exit_status, 0);  // the last one is answered
+  EXPECT_EQ(status()["mode"], "frozen");
+}
+
 }  // namespace

@@ -31,8 +31,13 @@ TEST_F(CommandLine, LeadsTheBoxThroughItsModes) {
   EXPECT_TRUE(becomes([](const json& status) {
     return status["mode"] == "delayed" && status["delay_ms"] == 1000;
   }));
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_EQ(kagami({"freeze"}).exit_status, 0);
+    EXPECT_EQ(status()["mode"], "frozen") << "an answer comes after the effect, each time";
+  }
+  EXPECT_EQ(kagami({"thaw"}).exit_status, 0);
+  EXPECT_TRUE(becomes([](const json& status) { return status["mode"] == "delayed"; }));
   EXPECT_EQ(kagami({"freeze"}).exit_status, 0);
-  EXPECT_TRUE(becomes([](const json& status) { return status["mode"] == "frozen"; }));
   EXPECT_EQ(kagami({"view", "2"}).exit_status, 0);
   EXPECT_TRUE(becomes(
       [](const json& status) { return status["mode"] == "frozen" && status["view_shown"] == 2; }));
