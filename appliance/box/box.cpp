@@ -4,7 +4,6 @@
 
 #include "appliance/box/memory.h"
 #include "appliance/box/run_facts.h"
-#include "appliance/metrics/metrics_text.h"
 
 namespace appliance {
 
@@ -107,41 +106,6 @@ std::expected<void, std::string> Box::stop() {
 
 void Box::endWithout(const std::vector<std::string>& hung) {
   if (!hung.empty() && on_hang_) on_hang_(hung);
-}
-
-std::optional<CommandId> Box::command(const Command& command) {
-  const CommandId id = ++last_command_;
-  if (!control_commands_.give({.command = command, .at = rt::now(), .id = id})) return std::nullopt;
-  return id;
-}
-
-std::optional<CommandAnswer> Box::nextAnswer() {
-  return commands_.answers().tryTake();
-}
-
-std::string Box::metrics() const {
-  return toJson(metrics_.snapshot());
-}
-
-/// What a person says of the target holds from the moment on screen on.
-rt::Timestamp Box::shownExposure() const {
-  const rt::Timestamp shown = shown_.exposure_middle.load(std::memory_order_relaxed);
-  return shown == rt::Timestamp{} ? rt::now() : shown;
-}
-
-bool Box::setTarget(const std::array<double, 3>& target_m) {
-  target_.setByHand({target_m[0], target_m[1], target_m[2]}, shownExposure());
-  board_.wake_render.ring();
-  return true;
-}
-
-void Box::releaseTarget() {
-  target_.release(shownExposure());
-  board_.wake_render.ring();
-}
-
-void Box::setScreenReleased(bool released) {
-  (void)parts_.handle({.verb = released ? "screen.release" : "screen.take"});
 }
 
 std::vector<BusObject> Box::busObjects() const {

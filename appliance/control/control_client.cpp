@@ -97,6 +97,11 @@ ControlClient::Answer ControlClient::takeScreen() {
   return withoutReply(call(kMaintenanceInterface, "TakeScreen", ""));
 }
 
+std::expected<std::string, std::string> ControlClient::loadRig(const std::string& text,
+                                                               const std::string& name) {
+  return call(kMaintenanceInterface, "LoadRig", "ss", text.c_str(), name.c_str());
+}
+
 std::expected<std::string, std::string> ControlClient::status() {
   return call(kStatusInterface, "Status", "");
 }

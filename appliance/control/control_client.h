@@ -31,6 +31,9 @@ class ControlClient {
   /// Until takeScreen() or the end of this client.
   [[nodiscard]] Answer releaseScreen();
   [[nodiscard]] Answer takeScreen();
+  /// What was ignored in it, one line each.
+  [[nodiscard]] std::expected<std::string, std::string> loadRig(const std::string& text,
+                                                                const std::string& name);
   /// The JSON of appliance::toJson(Status).
   [[nodiscard]] std::expected<std::string, std::string> status();
   /// The JSON of appliance::toJson(MetricsSnapshot).

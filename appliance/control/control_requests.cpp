@@ -11,6 +11,7 @@ namespace {
 
 using Kind = Command::Kind;
 
+constexpr std::size_t kLargestRigFile_bytes = 1U << 20;
 constexpr double kFarthestTargetMetres = 1000;  // beyond any hall; a slip of the decimal point
 
 }  // namespace
@@ -68,6 +69,13 @@ std::expected<std::array<double, 3>, std::string> requestTarget(double x_m, doub
     return std::unexpected(message.data());
   }
   return target_m;
+}
+
+std::expected<std::string, std::string> requestRig(std::string_view text) {
+  if (text.size() > kLargestRigFile_bytes)
+    return std::unexpected("a rig file of " + std::to_string(text.size()) +
+                           " bytes is larger than 1 MiB: is it a rig file?");
+  return std::string(text);
 }
 
 }  // namespace appliance

@@ -27,4 +27,7 @@ using Requested = std::expected<Command, std::string>;
 /// Why the director did not do what was asked, and what to do; empty: it did.
 [[nodiscard]] std::string_view refusalOf(CommandOutcome outcome);
 
+/// The text of a rig file, unless it is larger than any.
+[[nodiscard]] std::expected<std::string, std::string> requestRig(std::string_view text);
+
 }  // namespace appliance

@@ -134,6 +134,19 @@ int takeScreen(Server& server, sd_bus_message* message, sd_bus_error* /*error*/)
   return sd_bus_reply_method_return(message, "");
 }
 
+int loadRig(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  const char* text = nullptr;
+  const char* name = nullptr;
+  if (const int r = sd_bus_message_read(message, "ss", &text, &name); r < 0) return r;
+  const auto rig_text = requestRig(text);
+  if (!rig_text) return refuse(error, rig_text.error());
+  const auto loaded = server.sink.loadRig(*rig_text, name);
+  if (!loaded) return refuse(error, loaded.error());
+  std::string warnings;
+  for (const std::string& warning : *loaded) warnings += warning + "\n";
+  return sd_bus_reply_method_return(message, "s", warnings.c_str());
+}
+
 int statusJson(Server& server, sd_bus_message* message, sd_bus_error* /*error*/) {
   if (server.json.empty()) server.json = toJson(server.status);
   return sd_bus_reply_method_return(message, "s", server.json.c_str());
@@ -201,6 +214,8 @@ const auto kMaintenanceTable = std::to_array<sd_bus_vtable>({
     SD_BUS_VTABLE_START(0),
     SD_BUS_METHOD_WITH_ARGS("ReleaseScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<releaseScreen>,
                             kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("LoadRig", SD_BUS_ARGS("s", text, "s", name),
+                            SD_BUS_RESULT("s", warnings), kOn<loadRig>, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("TakeScreen", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<takeScreen>,
                             kOpenToAll),
     SD_BUS_VTABLE_END,

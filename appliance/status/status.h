@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <expected>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -81,6 +82,10 @@ class ControlSink {
   [[nodiscard]] virtual bool setTarget(const std::array<double, 3>& target_m) = 0;
   /// What was measured counts again, from the shown moment on.
   virtual void releaseTarget() = 0;
+  /// From the next picture on, the rig of a rig file's @p text is used; @p name stands for the file
+  /// in messages. Gives what was ignored in it, one line each; or one line why it is not taken.
+  [[nodiscard]] virtual std::expected<std::vector<std::string>, std::string> loadRig(
+      const std::string& text, const std::string& name) = 0;
   /// True: another program may show something; false: the screen is ours again.
   virtual void setScreenReleased(bool released) = 0;
 };

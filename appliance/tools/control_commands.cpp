@@ -1,10 +1,14 @@
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -85,6 +89,17 @@ void releaseScreen(const ControlPlace& place, std::vector<std::string> command) 
     throw CLI::RuntimeError(status);
 }
 
+void loadRig(const ControlPlace& place, const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) fail(path + ": cannot be read (" + std::strerror(errno) + ")");
+  const auto warnings = connect(place).loadRig(text.str(), path);
+  if (!warnings) fail(warnings.error());
+  std::fputs(warnings->c_str(), stderr);
+  std::printf("%s: in use until kagamid ends\n", path.c_str());
+}
+
 }  // namespace
 
 void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
@@ -138,6 +153,13 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   });
   kagami.add_subcommand("sweep", "Walk through all views of the stopped moment")
       ->callback([&place] { expectDone(connect(place).sweep()); });
+
+  CLI::App* rig = kagami.add_subcommand("rig", "Use another calibration while the box runs");
+  rig->require_subcommand(1);
+  CLI::App* load = rig->add_subcommand("load", "Use this rig file from the next picture on");
+  const auto rig_file = std::make_shared<std::string>();
+  load->add_option("FILE", *rig_file, "for the running cameras")->required();
+  load->callback([&place, rig_file] { loadRig(place, *rig_file); });
 
   CLI::App* screen = kagami.add_subcommand("screen", "Give the screen to another program");
   screen->require_subcommand(1);

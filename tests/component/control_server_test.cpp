@@ -75,6 +75,16 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
   EXPECT_EQ(box_.status().screen, hal::ScreenState::kShowing);
 }
 
+TEST_F(ControlInterface, HandsARigFileToTheBoxAndItsWarningsBack) {
+  ControlClient kagami = client();
+  EXPECT_EQ(kagami.loadRig("format = 2\nmirror = 1\n", "rig.toml"), "rig.toml:2: ignored\n");
+  EXPECT_EQ(box_.rigText(), "format = 2\nmirror = 1\n");
+  EXPECT_EQ(kagami.loadRig("{", "rig.toml").error(), "rig.toml:1: no rig");
+  const std::string huge(2U << 20, '#');
+  EXPECT_THAT(kagami.loadRig(huge, "rig.toml").error(), HasSubstr("larger than 1 MiB"));
+  EXPECT_EQ(box_.rigText(), "format = 2\nmirror = 1\n");
+}
+
 TEST_F(ControlInterface, RefusesInvalidArgumentsWithOneLineAndChangesNothing) {
   ControlClient kagami = client();
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <expected>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -46,6 +47,18 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
   void releaseTarget() override {
     const std::scoped_lock lock(mutex_);
     target_m_ = {0, 0, 1};
+  }
+  /// Takes a text that begins with "format" and ignores its second line.
+  [[nodiscard]] std::expected<std::vector<std::string>, std::string> loadRig(
+      const std::string& text, const std::string& name) override {
+    const std::scoped_lock lock(mutex_);
+    if (!text.starts_with("format")) return std::unexpected(name + ":1: no rig");
+    rig_text_ = text;
+    return std::vector<std::string>{name + ":2: ignored"};
+  }
+  [[nodiscard]] std::string rigText() const {
+    const std::scoped_lock lock(mutex_);
+    return rig_text_;
   }
   void setScreenReleased(bool released) override {
     const std::scoped_lock lock(mutex_);
@@ -94,6 +107,7 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
   mutable std::mutex mutex_;
   std::vector<appliance::Command> commands_;
   std::array<double, 3> target_m_{0, 0, 1};
+  std::string rig_text_;
   std::vector<appliance::Remark> degraded_{{"memory", "memory is not locked"},
                                            {"camera 7", "view 7 \"rear\" is lost"}};
   std::vector<appliance::CommandAnswer> answers_;

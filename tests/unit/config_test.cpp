@@ -159,11 +159,11 @@ TEST(Config, IgnoresAnUnknownKeyOfTheFileAndSaysLineAndSuggestion) {
       "[trigger]\nrate_hz = 50\n\n[display]\nwidht_px = 800\n[triger]\n", "kagamid.toml");
   ASSERT_TRUE(config.has_value()) << config.error();
   EXPECT_EQ(config->trigger.rate_hz, 50);
-  EXPECT_THAT(config->warnings,
-              testing::UnorderedElementsAre(
-                  AllOf(StartsWith("kagamid.toml:5: "), HasSubstr("widht_px"),
-                        HasSubstr("\"width_px\"?")),
-                  AllOf(StartsWith("kagamid.toml:6: "), HasSubstr("\"trigger\"?"))));
+  EXPECT_THAT(
+      config->warnings,
+      testing::UnorderedElementsAre(
+          AllOf(StartsWith("kagamid.toml:5: "), HasSubstr("widht_px"), HasSubstr("\"width_px\"?")),
+          AllOf(StartsWith("kagamid.toml:6: "), HasSubstr("\"trigger\"?"))));
 }
 
 TEST(Config, RefusesAnUnknownKeyThatAPersonTyped) {
@@ -244,8 +244,7 @@ TEST(Config, GivesAModelItsOwnResendsAndTheCommonOnesForTheRest) {
   EXPECT_FALSE(config->resend.models[1].policy.enabled);
 
   EXPECT_THAT(faultOf("[[resend.model]]\npacket_timeout_us = 8000"), HasSubstr("name"));
-  const auto misspelt =
-      parseConfig("[[resend.model]]\nname = \"a\"\npacket_timout_us = 8000", "f");
+  const auto misspelt = parseConfig("[[resend.model]]\nname = \"a\"\npacket_timout_us = 8000", "f");
   ASSERT_TRUE(misspelt.has_value()) << misspelt.error();
   EXPECT_THAT(misspelt->warnings, testing::ElementsAre(HasSubstr("\"packet_timeout_us\"?")));
   EXPECT_THAT(faultOf("[[resend.model]]\nname = \"a\"\n[[resend.model]]\nname = \"a\""),
