@@ -74,6 +74,12 @@ ControlClient::Answer ControlClient::setDelay(std::uint32_t delay_ms) {
 ControlClient::Answer ControlClient::setView(std::uint32_t view) {
   return withoutReply(call(kControlInterface, "SetView", "u", view));
 }
+ControlClient::Answer ControlClient::setSpeed(const std::string& rate) {
+  return withoutReply(call(kControlInterface, "SetSpeed", "s", rate.c_str()));
+}
+ControlClient::Answer ControlClient::replay(std::uint32_t delay_ms, const std::string& rate) {
+  return withoutReply(call(kControlInterface, "Replay", "us", delay_ms, rate.c_str()));
+}
 ControlClient::Answer ControlClient::setTarget(const std::array<double, 3>& target_m) {
   return withoutReply(
       call(kControlInterface, "SetTarget", "ddd", target_m[0], target_m[1], target_m[2]));

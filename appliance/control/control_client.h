@@ -23,6 +23,8 @@ class ControlClient {
   [[nodiscard]] Answer setMode(const std::string& mode);
   [[nodiscard]] Answer setDelay(std::uint32_t delay_ms);
   [[nodiscard]] Answer setView(std::uint32_t view);  ///< from 1
+  [[nodiscard]] Answer setSpeed(const std::string& rate);
+  [[nodiscard]] Answer replay(std::uint32_t delay_ms, const std::string& rate);
   [[nodiscard]] Answer setTarget(const std::array<double, 3>& target_m);
   [[nodiscard]] Answer releaseTarget();
   [[nodiscard]] Answer freeze();

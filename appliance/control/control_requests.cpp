@@ -22,8 +22,10 @@ Requested requestMode(std::string_view mode) {
   if (mode == "sweep") return Command{Kind::kStartSweep};
   if (mode == "delayed")
     return std::unexpected("mode delayed is entered by its delay: set a delay in milliseconds");
+  if (mode == "slow")
+    return std::unexpected("mode slow is entered by its speed: set a speed of 1/2, 1/4 or 1/8");
   return std::unexpected("unknown mode \"" + rt::printable(mode) +
-                         "\": the modes are live, delayed, frozen and sweep");
+                         "\": the modes are live, delayed, slow, frozen and sweep");
 }
 
 Requested requestDelay(std::uint32_t delay_ms, const Status& now) {
@@ -55,6 +57,24 @@ std::string_view refusalOf(CommandOutcome outcome) {
       return "that moment has not come yet: this is the newest one";
   }
   return "";
+}
+
+Requested requestSpeed(std::string_view rate) {
+  const auto known = rateNamed(rate);
+  if (!known)
+    return std::unexpected("unknown speed \"" + rt::printable(rate) +
+                           "\": the speeds are 1, 1/2, 1/4, 1/8 and 0");
+  return Command{.kind = Kind::kSetRate, .rate = *known};
+}
+
+Requested requestReplay(std::uint32_t delay_ms, std::string_view rate, const Status& now) {
+  const auto speed = requestSpeed(rate);
+  if (!speed) return speed;
+  if (speed->rate == Rate::kStill)
+    return std::unexpected("a replay at speed 0 has no end: the speeds are 1, 1/2, 1/4 and 1/8");
+  auto replay = requestDelay(delay_ms, now);
+  if (!replay) return replay;
+  return Command{.kind = Kind::kReplay, .delay = replay->delay, .rate = speed->rate};
 }
 
 std::expected<std::array<double, 3>, std::string> requestTarget(double x_m, double y_m,

@@ -20,6 +20,11 @@ using Requested = std::expected<Command, std::string>;
 [[nodiscard]] Requested requestDelay(std::uint32_t delay_ms, const Status& now);
 /// @p view counts from 1.
 [[nodiscard]] Requested requestView(std::uint32_t view, const Status& now);
+/// @p rate: "1", "1/2", "1/4", "1/8" or "0".
+[[nodiscard]] Requested requestSpeed(std::string_view rate);
+/// The last @p delay_ms once more at @p rate, which is not "0".
+[[nodiscard]] Requested requestReplay(std::uint32_t delay_ms, std::string_view rate,
+                                      const Status& now);
 [[nodiscard]] std::expected<std::array<double, 3>, std::string> requestTarget(double x_m,
                                                                               double y_m,
                                                                               double z_m);

@@ -92,6 +92,19 @@ int setView(Server& server, sd_bus_message* message, sd_bus_error* error) {
   return answer(server, message, requestView(view, server.status), error);
 }
 
+int setSpeed(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  const char* rate = nullptr;
+  if (const int r = sd_bus_message_read(message, "s", &rate); r < 0) return r;
+  return answer(server, message, requestSpeed(rate), error);
+}
+
+int replay(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  std::uint32_t delay_ms = 0;
+  const char* rate = nullptr;
+  if (const int r = sd_bus_message_read(message, "us", &delay_ms, &rate); r < 0) return r;
+  return answer(server, message, requestReplay(delay_ms, rate, server.status), error);
+}
+
 int setTarget(Server& server, sd_bus_message* message, sd_bus_error* error) {
   double x_m = 0;
   double y_m = 0;
@@ -200,6 +213,10 @@ const auto kControlTable = std::to_array<sd_bus_vtable>({
                             kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("SetView", SD_BUS_ARGS("u", view), SD_BUS_NO_RESULT, kOn<setView>,
                             kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("SetSpeed", SD_BUS_ARGS("s", rate), SD_BUS_NO_RESULT, kOn<setSpeed>,
+                            kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("Replay", SD_BUS_ARGS("u", delay_ms, "s", rate), SD_BUS_NO_RESULT,
+                            kOn<replay>, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("SetTarget", SD_BUS_ARGS("d", x_m, "d", y_m, "d", z_m),
                             SD_BUS_NO_RESULT, kOn<setTarget>, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("ReleaseTarget", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<releaseTarget>,

@@ -100,9 +100,30 @@ void loadRig(const ControlPlace& place, const std::string& path) {
   std::printf("%s: in use until kagamid ends\n", path.c_str());
 }
 
+std::uint32_t inMilliseconds(double time_s) {
+  return static_cast<std::uint32_t>(std::lround(time_s * 1e3));
+}
+
+void addPlaybackCommands(CLI::App& kagami, const ControlPlace& place) {
+  CLI::App* speed = kagami.add_subcommand("speed", "Play from the shown moment in slow motion");
+  const auto rate = std::make_shared<std::string>();
+  speed->add_option("SPEED", *rate, "1, 1/2, 1/4, 1/8, or 0 to stop")->required();
+  speed->callback([&place, rate] { expectDone(connect(place).setSpeed(*rate)); });
+
+  CLI::App* replay = kagami.add_subcommand("replay", "Show the last seconds once more");
+  const auto back_s = std::make_shared<double>(0);
+  const auto replay_rate = std::make_shared<std::string>("1/2");
+  replay->add_option("SECONDS", *back_s)->required()->check(CLI::Range(0.0, kLongestDelay_s));
+  replay->add_option("SPEED", *replay_rate, "1, 1/2, 1/4 or 1/8")->capture_default_str();
+  replay->callback([&place, back_s, replay_rate] {
+    expectDone(connect(place).replay(inMilliseconds(*back_s), *replay_rate));
+  });
+}
+
 }  // namespace
 
 void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
+  addPlaybackCommands(kagami, place);
   CLI::App* status = kagami.add_subcommand("status", "What the box shows and how it is");
   const auto as_json = std::make_shared<bool>(false);
   status->add_flag("--json", *as_json, "as one JSON object");
@@ -116,9 +137,8 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   CLI::App* delay = kagami.add_subcommand("delay", "Show what was this long ago; 0 is live");
   const auto delay_s = std::make_shared<double>(0);
   delay->add_option("SECONDS", *delay_s)->required()->check(CLI::Range(0.0, kLongestDelay_s));
-  delay->callback([&place, delay_s] {
-    expectDone(connect(place).setDelay(static_cast<std::uint32_t>(std::lround(*delay_s * 1e3))));
-  });
+  delay->callback(
+      [&place, delay_s] { expectDone(connect(place).setDelay(inMilliseconds(*delay_s))); });
 
   CLI::App* view = kagami.add_subcommand("view", "Show another view");
   const auto number = std::make_shared<std::uint32_t>(0);

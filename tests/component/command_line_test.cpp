@@ -50,13 +50,16 @@ TEST_F(CommandLine, LeadsTheBoxThroughItsModes) {
   EXPECT_TRUE(becomes([](const json& status) { return status["target_origin"] == "the rig's"; }));
   EXPECT_NE(kagami({"target"}).exit_status, 0);
   EXPECT_EQ(kagami({"mode", "live"}).exit_status, 0);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"speed", "1/2"}, {"replay", "0.5", "1/4"}, {"mode", "live"}})
+    EXPECT_EQ(kagami(words).exit_status, 0) << words.front();
   EXPECT_TRUE(becomes([](const json& status) { return status["mode"] == "live"; }));
 }
 
 TEST_F(CommandLine, RefusesWhatIsNotThereInOneLineAndStaysAsItWas) {
   ASSERT_TRUE(becomes([](const json& status) { return status["shown_hz"] > 0; }));
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"view", "3"}, {"delay", "-1"}, {"mode", "backwards"}}) {
+           {"view", "3"}, {"delay", "-1"}, {"mode", "backwards"}, {"speed", "2"}}) {
     const Answer answer = kagami(words);
     EXPECT_NE(answer.exit_status, 0) << words.front();
     EXPECT_FALSE(answer.text.empty()) << words.front();

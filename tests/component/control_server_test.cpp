@@ -23,6 +23,7 @@ namespace {
 
 using appliance::Command;
 using appliance::ControlClient;
+using appliance::Rate;
 using std::chrono::milliseconds;
 using test::Box;
 using test::Daemon;
@@ -57,12 +58,20 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
   EXPECT_TRUE(kagami.setDelay(2500).has_value());
   EXPECT_TRUE(kagami.setView(20).has_value());
   EXPECT_TRUE(kagami.freeze().has_value());
+  EXPECT_TRUE(kagami.thaw().has_value());
   EXPECT_TRUE(kagami.sweep().has_value());
-  EXPECT_THAT(box_.commands(),
-              ElementsAre(Command{Command::Kind::kGoLive},
-                          Command{.kind = Command::Kind::kSetDelay, .delay = milliseconds(2500)},
-                          Command{.kind = Command::Kind::kSetView, .camera = 19},
-                          Command{Command::Kind::kFreeze}, Command{Command::Kind::kStartSweep}));
+  EXPECT_TRUE(kagami.setSpeed("1/4").has_value());
+  EXPECT_TRUE(kagami.replay(2000, "1/8").has_value());
+  EXPECT_THAT(
+      box_.commands(),
+      ElementsAre(
+          Command{Command::Kind::kGoLive},
+          Command{.kind = Command::Kind::kSetDelay, .delay = milliseconds(2500)},
+          Command{.kind = Command::Kind::kSetView, .camera = 19}, Command{Command::Kind::kFreeze},
+          Command{Command::Kind::kThaw}, Command{Command::Kind::kStartSweep},
+          Command{.kind = Command::Kind::kSetRate, .rate = Rate::kQuarter},
+          Command{
+              .kind = Command::Kind::kReplay, .delay = milliseconds(2000), .rate = Rate::kEighth}));
   EXPECT_TRUE(kagami.setTarget({1, 2, 0.5}).has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{1, 2, 0.5}));
   EXPECT_TRUE(kagami.releaseTarget().has_value());
@@ -93,6 +102,7 @@ TEST_F(ControlInterface, RefusesInvalidArgumentsWithOneLineAndChangesNothing) {
   EXPECT_THAT(kagami.setView(21).error(), HasSubstr("there is no view 21"));
   EXPECT_THAT(kagami.setMode("backwards").error(), HasSubstr("unknown mode \"backwards\""));
   EXPECT_THAT(kagami.setDelay(60'000).error(), HasSubstr("longer than the stored"));
+  EXPECT_THAT(kagami.setSpeed("2").error(), HasSubstr("the speeds are"));
   EXPECT_TRUE(box_.commands().empty());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{0, 0, 1}));
 }

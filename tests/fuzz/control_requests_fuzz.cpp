@@ -13,20 +13,22 @@ void check(const Requested& requested, const appliance::Status& now) {
     fuzz::requireOneLine(requested.error());
     return;
   }
-  if (requested->kind == appliance::Command::Kind::kSetView)
+  using enum appliance::Command::Kind;
+  if (requested->kind == kSetView)
     fuzz::require(requested->camera < now.cameras.size(), "a view that is asked for exists");
-  if (requested->kind == appliance::Command::Kind::kSetDelay)
+  if (requested->kind == kSetDelay || requested->kind == kReplay)
     fuzz::require(requested->delay <= std::chrono::milliseconds(now.history_ms),
                   "a delay lies within the history");
 }
 
 }  // namespace
 
-/// The box's state, then the arguments of every request; the rest is the name of a mode.
+/// The box's state, then the arguments of every request; the rest is the name of a mode
+/// and a speed.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Bytes bytes(data, size);
   appliance::Status now;
-  now.mode = static_cast<appliance::Mode>(bytes.number<std::uint8_t>() % 4);
+  now.mode = static_cast<appliance::Mode>(bytes.number<std::uint8_t>() % appliance::kModes.size());
   now.cameras.resize(bytes.number<std::uint8_t>());
   now.history_ms = bytes.number<std::uint32_t>();
   check(appliance::requestDelay(bytes.number<std::uint32_t>(), now), now);
@@ -39,7 +41,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const double coordinate : target.value_or(std::array<double, 3>{}))
     fuzz::require(std::isfinite(coordinate), "a target is finite");
   const auto mode = bytes.take(size);
-  const Requested requested = appliance::requestMode(fuzz::text(mode.data(), mode.size()));
-  if (requested) check(requested, now);
+  const auto name = fuzz::text(mode.data(), mode.size());
+  check(appliance::requestMode(name), now);
+  check(appliance::requestSpeed(name), now);
+  check(appliance::requestReplay(now.history_ms / 2, name, now), now);
   return 0;
 }

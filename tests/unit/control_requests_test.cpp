@@ -22,22 +22,39 @@ Status running(Mode mode) {
   return status;
 }
 
-TEST(ControlRequests, AModeIsACommandThatNamesTheStateAndNeverAToggle) {
-  EXPECT_EQ(appliance::requestMode("frozen").value(), Command{Command::Kind::kFreeze});
-  EXPECT_EQ(appliance::requestMode("sweep").value(), Command{Command::Kind::kStartSweep});
-  EXPECT_EQ(appliance::requestMode("live").value(), Command{Command::Kind::kGoLive});
-}
-
-TEST(ControlRequests, RefusesUnknownModesByNamingTheKnownOnes) {
-  EXPECT_THAT(appliance::requestMode("Live").error(), HasSubstr("live, delayed, frozen and sweep"));
-  EXPECT_THAT(appliance::requestMode("delayed").error(), HasSubstr("set a delay"));
-}
-
 TEST(ControlRequests, EveryOutcomeButSuccessHasALine) {
   using enum appliance::CommandOutcome;
   EXPECT_EQ(appliance::refusalOf(kApplied), "");
   for (const auto outcome : {kNoPictureYet, kNoSuchView, kAtMemorysEnd, kNothingNewer})
     EXPECT_NE(appliance::refusalOf(outcome), "");
+}
+
+TEST(ControlRequests, AModeIsACommandThatNamesAState) {
+  EXPECT_EQ(*appliance::requestMode("live"), Command{Command::Kind::kGoLive});
+  EXPECT_EQ(*appliance::requestMode("frozen"), Command{Command::Kind::kFreeze});
+  EXPECT_EQ(*appliance::requestMode("sweep"), Command{Command::Kind::kStartSweep});
+}
+
+TEST(ControlRequests, RefusesUnknownModesByNamingTheKnownOnes) {
+  EXPECT_THAT(appliance::requestMode("Live").error(),
+              HasSubstr("live, delayed, slow, frozen and sweep"));
+  EXPECT_THAT(appliance::requestMode("delayed").error(), HasSubstr("set a delay"));
+  EXPECT_THAT(appliance::requestMode("slow").error(), HasSubstr("set a speed"));
+}
+
+TEST(ControlRequests, SpeedsHaveNames) {
+  EXPECT_EQ(*appliance::requestSpeed("1/4"),
+            (Command{.kind = Command::Kind::kSetRate, .rate = appliance::Rate::kQuarter}));
+  EXPECT_THAT(appliance::requestSpeed("0.25").error(), HasSubstr("1, 1/2, 1/4, 1/8 and 0"));
+}
+
+TEST(ControlRequests, AReplayNeedsASpeedAndStoredTime) {
+  const Status now = running(Mode::kLive);
+  EXPECT_EQ(*appliance::requestReplay(3000, "1/2", now), (Command{.kind = Command::Kind::kReplay,
+                                                                  .delay = milliseconds(3000),
+                                                                  .rate = appliance::Rate::kHalf}));
+  EXPECT_THAT(appliance::requestReplay(3000, "0", now).error(), HasSubstr("no end"));
+  EXPECT_THAT(appliance::requestReplay(8000, "1", now).error(), HasSubstr("longer than"));
 }
 
 TEST(ControlRequests, ViewsCountFromOne) {
