@@ -69,7 +69,7 @@ Screen screenOf(std::unique_ptr<Display> display) {
   return {.display = std::move(display), .source = source};
 }
 
-/// @p missing: the screen that this stands for, in one line; empty where none was asked for.
+/// @p missing: why there is no screen, in one line; empty if the configuration asks for none.
 std::expected<Screen, std::string> makeOffscreen(const Config::Display& config, const Rig& rig,
                                                  const std::string& missing) {
   hal::ScreenStatus status;
@@ -81,8 +81,8 @@ std::expected<Screen, std::string> makeOffscreen(const Config::Display& config, 
   return screenOf(std::move(*display));
 }
 
-/// A screen that is not there yet is waited for. Without a card that could have one the box still
-/// captures, keeps and answers: decision 0011.
+/// The box waits for a screen that is not there yet. Without a card for one it still captures,
+/// keeps and answers: decision 0011.
 std::expected<Screen, std::string> makeScreen(const Config& config, const Rig& rig) {
   if (config.display.backend == "offscreen") return makeOffscreen(config.display, rig, "");
   if (config.display.backend != "kms") {
@@ -110,7 +110,7 @@ bool scheduleDrawWorkers(const ThreadSchedule& how) {
       {.policy = how.policy, .priority = how.priority, .cpus = how.cpus});
 }
 
-/// What a killed daemon could not do: the kernel lets its lines go at whatever level they had.
+/// Drives the lines inactive after a daemon was killed: the kernel leaves them at their last level.
 std::expected<void, std::string> releaseLines(const Options& options) {
   const auto config = loadConfig(options.config_file, options.overrides);
   if (!config) return std::unexpected(config.error());
@@ -162,9 +162,9 @@ std::expected<void, std::string> run(const Site& site, EventLoop& loop) {
   return recorder ? recorder->finish() : std::expected<void, std::string>{};
 }
 
-/// Large buffers go back to the system. Left alone, glibc takes the first one that is freed as a
-/// sign to keep such in the heap of every thread that asks again: the heaps of all threads that
-/// open cameras would grow, once each, whenever cables are pulled for the first time.
+/// Always maps buffers above 128 KiB, so that freeing one returns it to the system. By default
+/// glibc raises this threshold at the first large free(); every thread that opens a camera would
+/// then keep that memory for good.
 void returnLargeBuffers() {
   constexpr int kLargeBytes = 128 * 1024;
   static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargeBytes));

@@ -14,6 +14,7 @@
 #include "appliance/capture/camera_supervisor.h"
 #include "appliance/capture/collector.h"
 #include "appliance/capture/frame_history.h"
+#include "appliance/capture/frame_reader.h"
 #include "appliance/capture/trigger_loop.h"
 #include "hal/aravis/aravis_camera.h"
 #include "hal/aravis/camera_probe.h"
@@ -64,6 +65,9 @@ class Receiver {
          .reserve = 4});
     auto line = hal::emulated::EmulatedTriggerLine::open(kWirePort);
     if (!history || !line) return;
+    auto reader = (*history)->openReader("stamps", 1);
+    if (!reader) return;
+    reader_ = *reader;
     history_ = std::move(*history);
     line_ = std::move(*line);
     for (std::uint32_t i = 0; i < kCameras; ++i) {
@@ -148,7 +152,7 @@ class Receiver {
     unsigned wrong = 0;
     for (std::uint32_t camera = 0; camera < kCameras; ++camera) {
       for (std::uint64_t t = trigger; t <= newest(); ++t) {
-        const auto pin = history_->camera(camera).tryPin(t);
+        const auto pin = reader_->tryPin(camera, t);
         if (!pin) continue;
         ++looked_at;
         const auto* pixels = reinterpret_cast<const std::uint8_t*>(pin->pixels);
@@ -165,6 +169,7 @@ class Receiver {
 
  private:
   std::unique_ptr<appliance::FrameHistory> history_;
+  appliance::FrameReader* reader_ = nullptr;  // history_'s
   std::unique_ptr<hal::emulated::EmulatedTriggerLine> line_;
   appliance::CaptureBoard board_{kCameras};
   std::vector<std::unique_ptr<appliance::Collector>> collectors_;

@@ -18,8 +18,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::require(std::isfinite(rig->reference_focal_px) && rig->reference_focal_px > 0 &&
                     std::isfinite(rig->reference_distance_m) && rig->reference_distance_m > 0,
                 "the references are lengths");
+  const appliance::TargetVolume& volume = rig->target_volume;
   fuzz::require(
-      rig->target_volume.centre_m.allFinite() && rig->target_volume.half_size_m.minCoeff() >= 0,
+      (!volume.centre_m || volume.centre_m->allFinite()) && volume.half_size_m.minCoeff() >= 0,
       "the target volume has a size");
   for (const std::string& warning : rig->warnings) fuzz::requireOneLine(warning);
   for (const appliance::RigCamera& camera : rig->cameras) {

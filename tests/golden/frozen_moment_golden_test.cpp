@@ -131,7 +131,7 @@ class FrozenBox : public testing::Test {
       slots_.push_back(history_->camera(i).fillingSlots()[0]);
     }
     reader_ = std::make_unique<PictureReader>(*display_);
-    loop_ = std::make_unique<RenderLoop>(RenderParts{.rig = rig_,
+    loop_ = std::make_unique<RenderLoop>(RenderParts{.rigs = rigs_,
                                                      .frames = *frames_,
                                                      .board = board_,
                                                      .commands = commands_,
@@ -166,7 +166,7 @@ class FrozenBox : public testing::Test {
   }
   void press(const Command& command) { ASSERT_TRUE(coach_.give({command, rt::now()})); }
 
-  Rig rig_ = arc();
+  RigShelf rigs_{arc()};
   CaptureBoard board_{kCameras};
   CommandInbox commands_{board_.wake_render};
   CommandSender& coach_ = commands_.open("coach");

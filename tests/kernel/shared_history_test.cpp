@@ -173,7 +173,8 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
   NotingDisplay display;
   OverlayBoard overlay;
   ImportCounter observer;
-  RenderLoop loop({.rig = rig,
+  RigShelf rigs(rig);
+  RenderLoop loop({.rigs = rigs,
                    .frames = shown,
                    .board = board,
                    .commands = commands,

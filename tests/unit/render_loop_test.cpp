@@ -99,7 +99,7 @@ class NotingDisplay final : public TestDisplay {
 
 /// What a render loop without frames works with.
 struct Bench {
-  explicit Bench(hal::Display& display) : display(display) {}
+  explicit Bench(hal::Display& screen) : display(screen) {}
   [[nodiscard]] RenderParts parts() {
     return {.rigs = rigs,
             .frames = frames,
