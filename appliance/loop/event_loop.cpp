@@ -94,8 +94,8 @@ EventLoop::Outcome EventLoop::every(rt::Nanoseconds period, Handler handler) {
   const auto on_time = [](sd_event_source* source, std::uint64_t due_us, void* userdata) {
     const auto& watched = *static_cast<Watched*>(userdata);
     watched.loop.handle(watched);
-    std::uint64_t now_us = 0;
-    (void)sd_event_now(watched.loop.event_.get(), CLOCK_MONOTONIC, &now_us);
+    // sd_event_now() is when the turn began: before the handler ran.
+    const std::uint64_t now_us = inMicroseconds(rt::now().time_since_epoch());
     sd_event_source_set_time(source, std::max(due_us + inMicroseconds(watched.period), now_us));
     return sd_event_source_set_enabled(source, SD_EVENT_ONESHOT);
   };

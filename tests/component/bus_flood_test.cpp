@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -121,26 +122,29 @@ TEST_F(BusFlood, NeitherStarvesTheWatchdogNorLosesFramesNorHidesAStopSignal) {
   startDaemon();
   ASSERT_TRUE(becomes([](const auto& status) { return status["shown_hz"] > 0; }));
   const std::uint64_t lost_before = status()["frames_lost"];
-  Flood flood(busAddress());
+  std::optional<Flood> flood(busAddress());
   systemd.startWatch();
   std::this_thread::sleep_for(kLength);
   const auto gap_ms = std::chrono::duration_cast<std::chrono::milliseconds>(systemd.longestGap());
-  EXPECT_GT(flood.asked(), 1000U);
+  const std::uint64_t asked = flood->asked();
+  EXPECT_GT(asked, 1000U);
   // A starved loop shows a gap as long as the flood. The bar on a quiet machine is 500 ms.
   EXPECT_LT(gap_ms, kLength / 2);
-  EXPECT_EQ(status()["frames_lost"], lost_before);
+  flood.reset();  // others are answered when what is queued on the bus has been
+  EXPECT_TRUE(becomes([&](const auto& status) { return status["frames_lost"] == lost_before; }));
 
-  const rt::Timestamp told = rt::now();
+  flood.emplace(busAddress());
+  std::this_thread::sleep_for(1s);
+  const rt::Timestamp asked_to_stop = rt::now();
   daemon().terminate();
   ASSERT_EQ(daemon().wait(60s), 0) << daemon().output();
   ASSERT_NE(systemd.stopping(), rt::Timestamp{});
   const auto heard_ms =
-      std::chrono::duration_cast<std::chrono::milliseconds>(systemd.stopping() - told);
+      std::chrono::duration_cast<std::chrono::milliseconds>(systemd.stopping() - asked_to_stop);
   EXPECT_LT(heard_ms, kLength / 2);
   std::printf("%llu calls in %lld s: longest watchdog gap %lld ms, SIGTERM heard after %lld ms\n",
-              static_cast<unsigned long long>(flood.asked()),
-              static_cast<long long>(kLength.count()), static_cast<long long>(gap_ms.count()),
-              static_cast<long long>(heard_ms.count()));
+              static_cast<unsigned long long>(asked), static_cast<long long>(kLength.count()),
+              static_cast<long long>(gap_ms.count()), static_cast<long long>(heard_ms.count()));
 }
 
 TEST_F(BusFlood, TwentyFreezesAtOnceLeaveThePictureFrozen) {

@@ -161,8 +161,10 @@ TEST(SharedHistory, TheRenderLoopGivesTheShownSlotToTheDisplayAndRecordsThatItWa
                          .lens = {.fx_px = 300, .fy_px = 300, .max_radius = 1}});
   rig.cameras[0].t_cam_rig_m = {0, 0, 4};
   fillReferences(rig);
-  const auto history =
-      makeShared({.frame_bytes = {std::size_t{320} * 256}, .sets = 10, .in_flight = 2});
+  const auto history = makeShared({.frame_bytes = {std::size_t{320} * 256},
+                                   .sets = 10,
+                                   .in_flight = 2,
+                                   .reserve = RenderLoop::kPinsPerCamera});
   ASSERT_NE(history, nullptr);
   ASSERT_EQ(history->notShared(), "");
   CaptureBoard board(1);

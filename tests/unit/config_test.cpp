@@ -91,6 +91,7 @@ TEST(Config, EveryKeyIsReadIntoTheStruct) {
                                           "display.width_px=1920",
                                           "display.height_px=1080",
                                           "display.refresh_hz=60",
+                                          "display.rotation_deg=90",
                                           "display.zoom=2",
                                           "display.render_threads=1",
                                           "display.font=/x",
