@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "appliance/status/status.h"
 #include "appliance/journal/condition_log.h"
+#include "appliance/status/status.h"
 
 /// What of a status is worth a line of the journal: pure.
 namespace appliance {

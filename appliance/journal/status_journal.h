@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "appliance/status/status.h"
 #include "appliance/journal/condition_log.h"
 #include "appliance/journal/loss_log.h"
+#include "appliance/status/status.h"
 
 namespace appliance {
 
