@@ -120,6 +120,48 @@ void addPlaybackCommands(CLI::App& kagami, const ControlPlace& place) {
   });
 }
 
+void addTargetCommand(CLI::App& kagami, const ControlPlace& place) {
+  CLI::App* target = kagami.add_subcommand("target", "Set the point that stays in the centre");
+  const auto target_m = std::make_shared<std::vector<double>>();
+  CLI::Option* position = target
+                              ->add_option("POSITION", *target_m,
+                                           "metres in the rig frame, +Z up; holds from the "
+                                           "shown moment on")
+                              ->expected(3)
+                              ->delimiter(',');
+  const auto release = std::make_shared<bool>(false);
+  target->add_flag("--release", *release, "follow what is measured again, or the rig's point")
+      ->excludes(position);
+  target->callback([&place, target_m, release] {
+    if (*release) {
+      expectDone(connect(place).releaseTarget());
+      return;
+    }
+    if (target_m->empty()) throw CLI::RequiredError("POSITION or --release");
+    expectDone(connect(place).setTarget({(*target_m)[0], (*target_m)[1], (*target_m)[2]}));
+  });
+}
+
+/// What needs the right to maintain: docs/dbus.md.
+void addMaintenanceCommands(CLI::App& kagami, const ControlPlace& place) {
+  CLI::App* rig = kagami.add_subcommand("rig", "Use another calibration while the box runs");
+  rig->require_subcommand(1);
+  CLI::App* load = rig->add_subcommand("load", "Use this rig file from the next picture on");
+  const auto rig_file = std::make_shared<std::string>();
+  load->add_option("FILE", *rig_file, "for the running cameras")->required();
+  load->callback([&place, rig_file] { loadRig(place, *rig_file); });
+
+  CLI::App* screen = kagami.add_subcommand("screen", "Give the screen to another program");
+  screen->require_subcommand(1);
+  CLI::App* lend = screen->add_subcommand(
+      "release", "Show nothing while COMMAND runs, or until Ctrl-C; capture goes on");
+  lend->prefix_command();
+  lend->callback([&place, lend] { releaseScreen(place, lend->remaining()); });
+  screen->add_subcommand("take", "Show pictures again")->callback([&place] {
+    expectDone(connect(place).takeScreen());
+  });
+}
+
 }  // namespace
 
 void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
@@ -145,25 +187,7 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   view->add_option("VIEW", *number, "from 1, along the arc")->required();
   view->callback([&place, number] { expectDone(connect(place).setView(*number)); });
 
-  CLI::App* target = kagami.add_subcommand("target", "Set the point that stays in the centre");
-  const auto target_m = std::make_shared<std::vector<double>>();
-  CLI::Option* position = target
-                              ->add_option("POSITION", *target_m,
-                                           "metres in the rig frame, +Z up; holds from the "
-                                           "shown moment on")
-                              ->expected(3)
-                              ->delimiter(',');
-  const auto release = std::make_shared<bool>(false);
-  target->add_flag("--release", *release, "follow what is measured again, or the rig's point")
-      ->excludes(position);
-  target->callback([&place, target_m, release] {
-    if (*release) {
-      expectDone(connect(place).releaseTarget());
-      return;
-    }
-    if (target_m->empty()) throw CLI::RequiredError("POSITION or --release");
-    expectDone(connect(place).setTarget({(*target_m)[0], (*target_m)[1], (*target_m)[2]}));
-  });
+  addTargetCommand(kagami, place);
 
   kagami.add_subcommand("freeze", "Stop at the shown moment")->callback([&place] {
     expectDone(connect(place).freeze());
@@ -174,22 +198,7 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   kagami.add_subcommand("sweep", "Walk through all views of the stopped moment")
       ->callback([&place] { expectDone(connect(place).sweep()); });
 
-  CLI::App* rig = kagami.add_subcommand("rig", "Use another calibration while the box runs");
-  rig->require_subcommand(1);
-  CLI::App* load = rig->add_subcommand("load", "Use this rig file from the next picture on");
-  const auto rig_file = std::make_shared<std::string>();
-  load->add_option("FILE", *rig_file, "for the running cameras")->required();
-  load->callback([&place, rig_file] { loadRig(place, *rig_file); });
-
-  CLI::App* screen = kagami.add_subcommand("screen", "Give the screen to another program");
-  screen->require_subcommand(1);
-  CLI::App* lend = screen->add_subcommand(
-      "release", "Show nothing while COMMAND runs, or until Ctrl-C; capture goes on");
-  lend->prefix_command();
-  lend->callback([&place, lend] { releaseScreen(place, lend->remaining()); });
-  screen->add_subcommand("take", "Show pictures again")->callback([&place] {
-    expectDone(connect(place).takeScreen());
-  });
+  addMaintenanceCommands(kagami, place);
 }
 
 }  // namespace appliance

@@ -283,6 +283,18 @@ rt::Timestamp warmUpEnd(const Trace& trace, double warm_up_s) {
          rt::Nanoseconds(std::llround(warm_up_s * 1e9));
 }
 
+void countPictures(const std::vector<const PictureRecord*>& shown, Report& report) {
+  report.pictures = shown.size();
+  report.shown_fps = distinctSetsPerSecond(shown);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    ++report.by_mode[static_cast<std::size_t>(shown[i]->mode)].pictures;
+    if (shown[i]->imported) ++report.pictures_imported;
+    if (i > 0 && playing(shown[i]->mode) && shown[i]->mode == shown[i - 1]->mode &&
+        sameFrame(*shown[i - 1], *shown[i]))
+      ++report.pictures_repeated;
+  }
+}
+
 }  // namespace
 
 Report computeReport(const ReportInput& input) {
@@ -305,15 +317,7 @@ Report computeReport(const ReportInput& input) {
   if (wire) report.frames_misattributed = countMisattributed(index, *wire, trace.run.trigger_hz);
 
   const auto shown = shownPictures(trace);
-  report.pictures = shown.size();
-  report.shown_fps = distinctSetsPerSecond(shown);
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    ++report.by_mode[static_cast<std::size_t>(shown[i]->mode)].pictures;
-    if (shown[i]->imported) ++report.pictures_imported;
-    if (i > 0 && playing(shown[i]->mode) && shown[i]->mode == shown[i - 1]->mode &&
-        sameFrame(*shown[i - 1], *shown[i]))
-      ++report.pictures_repeated;
-  }
+  countPictures(shown, report);
 
   Values values;
   for (const TriggerRecord& trigger : trace.triggers)
