@@ -67,7 +67,7 @@ int onList(sd_bus* /*bus*/, const char* /*prefix*/, void* jobs, char*** nodes,
       list[i] = strdup(JobObjects::pathOf(ids[i]).c_str());
       if (list[i] != nullptr) continue;
       for (std::size_t j = 0; j < i; ++j) std::free(list[j]);
-      std::free(list);
+      std::free(static_cast<void*>(list));
       return -ENOMEM;
     }
     *nodes = list;
