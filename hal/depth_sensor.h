@@ -78,7 +78,7 @@ struct DepthSensorSettings {
 ///
 /// Threads  One caller: the depth loop, which copies each pair for all readers. status(): any
 /// thread. RT       Blocks; never called from a real-time thread. Errors   No frame within the
-/// timeout is nullopt; status() tells silence, loss and end apart.
+/// timeout is nullopt; status() distinguishes silence, loss and end.
 class DepthSensor {
  public:
   virtual ~DepthSensor() = default;

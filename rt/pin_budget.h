@@ -8,7 +8,7 @@
 
 namespace rt {
 
-/// How many pins one reader of a SlotPool may hold at once. A reader that asks for more is
+/// How many pins one reader of a SlotPool may hold together. A reader that asks for more is
 /// refused, and the refusal is counted: what one reader keeps is missing nowhere else.
 ///
 /// Threads  Any.

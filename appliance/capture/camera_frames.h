@@ -88,7 +88,7 @@ struct PinnedFrame {
 class CameraFrames {
  public:
   /// @p slots: memory of sets + in_flight frames, one more, and one per pin that readers may hold
-  /// at once; @p dma_bufs: beside them, or empty.
+  /// together; @p dma_bufs: beside them, or empty.
   CameraFrames(std::vector<std::span<std::byte>> slots, std::vector<rt::DmaBufPart> dma_bufs,
                std::uint32_t sets, std::uint32_t in_flight);
 
@@ -96,7 +96,7 @@ class CameraFrames {
 
   /// The slots that the camera fills, `in_flight` at any time: a stream that ended in the midst of
   /// some frames leaves exactly these to the next one.
-  /// Threads  Whoever starts and stops the camera, while it is stopped.
+  /// Threads  The one that starts and stops the camera, while it is stopped.
   [[nodiscard]] std::span<const std::uint32_t> fillingSlots() const { return filling_; }
 
   /// How many sets are kept.

@@ -48,7 +48,7 @@ class FrameHistory {
   [[nodiscard]] static std::expected<std::unique_ptr<FrameHistory>, std::string> create(
       const HistoryLayout& layout, HistorySharing sharing = HistorySharing::kPrivate);
 
-  /// A reader that may pin so many frames of each camera at once; @p name is for people. It lives
+  /// A reader that may pin so many frames of each camera together; @p name is for people. It lives
   /// as long as the history. Refused if the readers together would exceed HistoryLayout::reserve.
   [[nodiscard]] std::expected<FrameReader*, std::string> openReader(std::string name,
                                                                     std::uint32_t pins_per_camera);

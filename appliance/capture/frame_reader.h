@@ -22,10 +22,10 @@ struct ReaderReport {
   std::uint64_t refused = 0;      ///< pins that it asked for beyond its budget
 };
 
-/// One reader's access to the frame history. It may pin so many frames of each camera at once, and
+/// One reader's access to the frame history. It may pin so many frames of each camera together, and
 /// no more; whatever it keeps, the cameras and the other readers have all that they need.
 ///
-/// Threads  tryPin(), pinned(): any, several at once if the reader has several threads. report():
+/// Threads  tryPin(), pinned(): any, several together if the reader has several threads. report():
 ///          any but a real-time one.
 /// RT       tryPin() is lock-free.
 /// Memory   Belongs to the history. Every pin ends before the history does.

@@ -18,7 +18,7 @@
 
 namespace appliance {
 
-/// The newest pairs of the depth sensor, for many readers at once.
+/// The newest pairs of the depth sensor, for many readers.
 ///
 /// The sensor lends a pair to one caller until the next call. The depth loop is this caller: it
 /// copies each pair once, into a slot, and from then on readers share the slot. A reader that

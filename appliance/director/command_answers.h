@@ -14,7 +14,7 @@ namespace appliance {
 ///
 /// Threads  give(), ring(): the render thread. tryTake(), fd(): main.
 /// RT       give() is wait-free; ring() is one system call, made in turns with such a command only.
-/// Errors   A full ring loses the newest answer and counts it: its giver is told after a second.
+/// Errors   A full ring loses the newest answer and counts it: its sender gets an error after 1 s.
 class CommandAnswers {
  public:
   void give(const CommandAnswer& answer) RT_SAFE { (void)ring_.tryPush(answer); }

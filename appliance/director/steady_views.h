@@ -12,7 +12,7 @@ namespace appliance {
 
 /// Which views deliver without interruption. A view that failed is steady again once it has
 /// delivered for kProven, so that a camera that comes and goes does not make the picture jump to
-/// and fro. The first time counts at once: a box that starts shows what it has.
+/// and fro. The first time counts immediately: a box that starts shows what it has.
 ///
 /// Threads  One. Pure: time is an argument.
 /// RT       RT safe.

@@ -16,7 +16,7 @@ namespace appliance {
 /// live     a camera that delivers; one that failed counts again once it is steady.
 /// played   a frame of the moment; a missing one is bridged by the view's previous ones, because a
 ///          repeated picture is not seen and a jump of the view is. Only steady views count.
-/// stopped  a frame of exactly the moment, whoever has it.
+/// stopped  a frame of exactly the moment, from any camera.
 ///
 /// Threads  One: the render thread.
 /// RT       RT safe; a few hundred calls of StoredViews.

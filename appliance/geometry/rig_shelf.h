@@ -40,7 +40,7 @@ class RigPin {
 };
 
 /// The rigs of this run. A rig never changes on the shelf: a better one is put beside it, and
-/// whoever asks from then on gets that one. Its slot is used again when no pin is left on it.
+/// every reader from then on gets that one. Its slot is used again when no pin is left on it.
 ///
 /// A reader takes one pin for one piece of work, a picture say, so that no piece of work mixes two
 /// rigs. The count, names, sizes and pixel formats of the cameras are those of the first rig.

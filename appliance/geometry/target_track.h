@@ -53,7 +53,7 @@ class TargetTrack {
   friend class TargetReader;
 
   struct Entry {
-    std::uint64_t index = 0;  // of the measurement, from 0: tells an overwritten one
+    std::uint64_t index = 0;  // of the measurement, from 0: shows an overwritten one
     rt::Timestamp at;
     TargetPoint point;
     double confidence = 0;

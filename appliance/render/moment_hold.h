@@ -9,7 +9,7 @@
 namespace appliance {
 
 /// Keeps all cameras' frames of one moment, so that a stopped picture stays what it is and can be
-/// walked around, however long capture goes on. It stands before a memory: whoever asks it finds
+/// walked around, however long capture goes on. It stands before a memory: a caller of it finds
 /// the held frames and, besides, everything that the memory holds.
 ///
 /// Threads  The render thread.
