@@ -9,9 +9,9 @@
 
 namespace appliance {
 
-/// While triggers are locked to the screen, every trigger's picture is meant for one vblank. A
-/// picture that is done a whole vblank early waits for it, and nothing is drawn that would make
-/// the next picture late.
+/// While triggers are locked to the screen, each trigger's picture has one vblank at which it
+/// should flip. A picture that is done a whole vblank early waits. A picture that would make the
+/// next one late is not drawn.
 ///
 /// Threads  Any; pure: time is an argument.
 class LockedVblanks {
@@ -31,9 +31,8 @@ class LockedVblanks {
     return timing_.vblankAt(of(trigger_edge) - 1) + kSurelyPast;
   }
 
-  /// Whether a picture without a new frame, begun @p now, comes on screen before the next trigger's
-  /// picture wants to. @p shown_edge: of the trigger on screen. True also when that next picture
-  /// does not come.
+  /// Whether a redraw started @p now flips before the next trigger's picture is due. Also true if
+  /// that picture is overdue. @p shown_edge: of the trigger that is drawn.
   [[nodiscard]] bool redrawFits(rt::Timestamp now, rt::Timestamp shown_edge) const {
     const std::uint64_t next = of(shown_edge) + vblanks_per_trigger_;
     if (now > timing_.vblankAt(next)) return true;
@@ -41,7 +40,7 @@ class LockedVblanks {
   }
 
  private:
-  /// More than a predicted vblank is off.
+  /// More than the error of a predicted vblank.
   static constexpr rt::Nanoseconds kSurelyPast = std::chrono::microseconds(200);
 
   hal::DisplayTiming timing_;

@@ -4,13 +4,12 @@
 
 namespace appliance {
 
-/// When the next picture may begin, so that a renderer that stands above receiving leaves it
-/// enough of every processor: the pictures between two begins that are T apart take at most
-/// share * (T + burst).
+/// Rate limit for drawing: in any interval T, pictures take at most share * (T + burst). The
+/// renderer has a higher priority than the receive threads and must leave them time on each CPU.
 ///
-/// A picture that took long is thus followed at once by the next ones, up to the burst, and what
-/// came late is caught up with; only a renderer that is always slow rests. It is the generic cell
-/// rate algorithm (ITU-T I.371, annex A) with a picture's duration as the cell.
+/// The burst lets the next pictures follow one slow picture immediately, so that the delay is
+/// caught up. Only a renderer that is always slow has to pause. It is the generic cell rate
+/// algorithm (ITU-T I.371, annex A) with a picture's duration as the cell.
 ///
 /// Threads  One at a time; pure.
 class RenderAllowance {
@@ -30,7 +29,7 @@ class RenderAllowance {
  private:
   double share_;
   rt::Nanoseconds burst_;
-  rt::Timestamp paid_at_;  // when what was spent so far will have been earned
+  rt::Timestamp paid_at_;  // when the allowance for all pictures so far will be earned
 };
 
 }  // namespace appliance

@@ -44,8 +44,8 @@ void RenderLoop::run(const std::stop_token& stop) noexcept {
   parts_.display.detach();
 }
 
-/// A shown camera that falls silent rings no bell; a period later its neighbour takes over. What
-/// moves needs every vblank.
+/// Wakes once a period at the latest: a shown camera that falls silent rings no bell, and its
+/// neighbour must take over. While the view moves, each vblank needs a picture.
 rt::Timestamp RenderLoop::nextWake(rt::Timestamp now) const noexcept {
   const rt::Timestamp latest = now + parameters_.trigger_period;
   const rt::Timestamp wake = std::min(parts_.display.nextCall().value_or(latest), latest);
@@ -115,7 +115,7 @@ void RenderLoop::sayWhatIsShown(const Shot& shot) noexcept {
   parts_.overlay.subject_changed.ring();
 }
 
-/// After the status that shows what they did.
+/// Called after the status was published, so that a caller finds what its command did.
 void RenderLoop::answerCommands() noexcept {
   const auto outcomes = director_.outcomes();
   bool waited = false;
@@ -137,8 +137,8 @@ void RenderLoop::takeCommands() noexcept {
   }
 }
 
-/// Without a screen nothing is drawn; one that came back or changed gets its picture at once, even
-/// of a stopped moment.
+/// Without a screen nothing is drawn. A screen that came back or changed gets its picture
+/// immediately, even if the moment is stopped.
 void RenderLoop::followScreen() noexcept {
   hal::Display& display = parts_.display;
   const bool released = counters_.screen.state == hal::ScreenState::kReleased;
@@ -150,8 +150,8 @@ void RenderLoop::followScreen() noexcept {
   counters_.screen = screen;
 }
 
-/// A new overlay alone gets a picture of its own where no other one carries it: not while views
-/// change faster than that.
+/// Whether the screen already shows what is wanted. A new overlay alone is drawn only if the last
+/// picture is half a period old: while views change quickly, the next picture carries it.
 bool RenderLoop::onScreen(const Wanted& wanted, rt::Timestamp now) const noexcept {
   const bool overlay_waits = now < shown_at_ + parameters_.trigger_period / 2;
   return picture_id_ != 0 && !stale_ && first_command_ == rt::Timestamp{} &&
@@ -165,10 +165,11 @@ rt::Timestamp RenderLoop::exposureMiddle(rt::Timestamp edge) const noexcept {
   return edge == rt::Timestamp{} ? edge : edge + parameters_.edge_to_exposure_middle;
 }
 
-/// A live picture's vblank is not taken away from it by an older one: not by one that shows the
-/// same moment again, for what that would tell the next one tells with the same vblank, and not by
-/// one that came too late for its own. A new moment is held back once in a row at most, so that
-/// something is shown however late all of them are.
+/// While triggers are locked to the screen, an older picture never takes the vblank of the next
+/// live one. Therefore two kinds of pictures are not drawn if they would flip at that vblank: the
+/// moment on screen once more (the next picture shows what changed), and a moment that missed its
+/// own vblank. At most one new moment in a row is skipped, so that the screen never freezes when
+/// all pictures are late.
 bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept {
   const Shot& shot = wanted.shot;
   const bool is_new = shot.trigger != on_screen_.shot.trigger;

@@ -30,14 +30,14 @@
 
 namespace appliance {
 
-/// What the render thread tells about itself.
+/// What the render thread reports.
 struct RenderStatus {
   Shot shot;
   hal::ScreenStatus screen;
   std::uint64_t blind = 0;  ///< a bit for each camera that does not have the target in its picture
   std::uint32_t cover_worst = 0;  ///< the camera that needs most zoom to cover the screen
   double cover_needed = 0;        ///< that zoom; 0: the zoom is fixed
-  FlickerReport flicker;          ///< of the light; nothing but zeros without compensation
+  FlickerReport flicker;          ///< of the light; all zeros without compensation
   Target target;                  ///< of the shown moment
   rt::Timestamp exposure_middle;  ///< of the shown moment; the epoch: not known
 };
@@ -64,18 +64,18 @@ struct RenderParameters {
   bool flicker_compensation = false;
 };
 
-/// Shows the picture that the director decides on, whenever the shown camera has a new frame or a
+/// Shows the picture that the director decides on. Wakes when the shown camera has a new frame or a
 /// command was given.
 ///
 /// Threads  run(): the `render` thread. status(): one reader.
 /// RT       Waits for the doorbell and draws. GL and the display may block: this loop is
-///          monitored, not RT safe. It stands above receiving and keeps to an allowance, so that
-///          capture has 40 % of every CPU.
-///          While triggers are locked, a picture that would come a vblank early waits.
+///          not RT safe. Its priority is above that of receiving, and an allowance limits it, so
+///          that capture has 40 % of each CPU. While triggers are locked, a picture that would flip
+///          a vblank early waits.
 class RenderLoop {
  public:
-  /// What is shown: a picture may show two moments of one camera. The moment that is held, and the
-  /// next one while it changes. One to spare.
+  /// Two for what is shown (a picture may show two moments of one camera), those of the held moment
+  /// and of the next one while it changes, and one to spare.
   static constexpr std::uint32_t kPinsPerCamera = 2 + MomentHold::kPinsPerCamera + 1;
 
   RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
