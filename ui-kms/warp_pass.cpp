@@ -58,7 +58,9 @@ std::expected<WarpPass, std::string> WarpPass::create() {
   using shader::Colour;
   WarpPass pass;
   auto& [gains, model] = pass.inner_;
+  auto& [soft_gains, soft_model] = pass.soft_;
   const std::string inner = shader::innerVertex();
+  const std::string soft = shader::softVertex();
   struct Wanted {
     Program& into;
     const char* name;
@@ -69,6 +71,10 @@ std::expected<WarpPass, std::string> WarpPass::create() {
            Wanted{gains[1], "warp linear", inner, shader::innerToLinear(Colour::kGains)},
            Wanted{model[0], "warp colour", inner, shader::innerToScreen(Colour::kModel)},
            Wanted{model[1], "warp colour linear", inner, shader::innerToLinear(Colour::kModel)},
+           Wanted{soft_gains[0], "soft", soft, shader::softToScreen(Colour::kGains)},
+           Wanted{soft_gains[1], "soft linear", soft, shader::softToLinear(Colour::kGains)},
+           Wanted{soft_model[0], "soft colour", soft, shader::softToScreen(Colour::kModel)},
+           Wanted{soft_model[1], "soft colour linear", soft, shader::softToLinear(Colour::kModel)},
            Wanted{pass.edge_[0], "warp edge", shader::edgeVertex(), shader::edgeToScreen()},
            Wanted{pass.edge_[1], "warp edge linear", shader::edgeVertex(), shader::edgeToLinear()},
        }) {
@@ -140,9 +146,6 @@ void WarpPass::draw(std::uint32_t index, const hal::ViewLayer& layer, GLuint sou
                     Output output) {
   Mesh& mesh = *meshes_[index];
   mesh.cells.update(layer.plan, layer.where);
-  const auto& inner = mesh.cells.innerIndices();
-  const auto& edge = mesh.cells.edgeIndices();
-  if (inner.empty() && edge.empty()) return;
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, source);
   glBindVertexArray(mesh.layout.get());
@@ -153,22 +156,23 @@ void WarpPass::draw(std::uint32_t index, const hal::ViewLayer& layer, GLuint sou
   glBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(first * sizeof(WarpVertex)),
                   static_cast<GLsizeiptr>(count * sizeof(WarpVertex)),
                   &mesh.cells.vertices()[first]);
-  const auto drawCells = [&](const std::vector<std::uint16_t>& indices, GLintptr at) {
-    glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, at, bytesOf(indices), indices.data());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices.size()), GL_UNSIGNED_SHORT,
-                   offset(static_cast<std::size_t>(at)));
-  };
-  if (!inner.empty()) {
-    const auto colour = static_cast<std::size_t>(colourOf(layer.plan.colour));
-    useFor(inner_[colour][static_cast<std::size_t>(output)], layer);
-    drawCells(inner, 0);
-  }
-  if (!edge.empty()) {
-    const Program& program = edge_[static_cast<std::size_t>(output)];
-    useFor(program, layer);
-    setLens(program, layer.plan);
-    drawCells(edge, bytesOf(inner));
-  }
+  const auto colour = static_cast<std::size_t>(colourOf(layer.plan.colour));
+  const auto into = static_cast<std::size_t>(output);
+  std::size_t at = 0;
+  drawCells(mesh.cells.innerIndices(), inner_[colour][into], layer, at);
+  drawCells(mesh.cells.softIndices(), soft_[colour][into], layer, at);
+  drawCells(mesh.cells.edgeIndices(), edge_[into], layer, at);
+}
+
+/// @p at: where their indices go in the layout's buffer; then the place behind them.
+void WarpPass::drawCells(const std::vector<std::uint16_t>& indices, const Program& program,
+                         const hal::ViewLayer& layer, std::size_t& at) {
+  if (indices.empty()) return;
+  useFor(program, layer);
+  glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLintptr>(at), bytesOf(indices),
+                  indices.data());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices.size()), GL_UNSIGNED_SHORT, offset(at));
+  at += static_cast<std::size_t>(bytesOf(indices));
 }
 
 void WarpPass::useFor(const Program& program, const hal::ViewLayer& layer) {
@@ -179,6 +183,12 @@ void WarpPass::useFor(const Program& program, const hal::ViewLayer& layer) {
     setColour(program, layer.plan);
   }
   if (program.opacity >= 0) glUniform1f(program.opacity, std::clamp(layer.opacity, 0.0F, 1.0F));
+  if (program.narrowing >= 0) {
+    static_assert(hal::EdgeMask::kPlaces == 64 && hal::EdgeMask::kFeather == 0.02F,
+                  "the shaders have these numbers, too");
+    glUniform1fv(program.narrowing, hal::EdgeMask::kPlaces, layer.plan.edge.narrowing.data());
+  }
+  if (program.focal_px >= 0) setLens(program, layer.plan);
 }
 
 void WarpPass::setColour(const Program& program, const hal::WarpPlan& plan) {
@@ -195,8 +205,6 @@ void WarpPass::setColour(const Program& program, const hal::WarpPlan& plan) {
 }
 
 void WarpPass::setLens(const Program& program, const hal::WarpPlan& plan) {
-  static_assert(hal::EdgeMask::kPlaces == 64 && hal::EdgeMask::kFeather == 0.02F,
-                "the edge shader has these numbers, too");
   const auto [k1, k2, p1, p2, k3] = plan.lens.distortion;
   // A radius without a limit must not become an infinity inside the shader.
   const double max_radius2 = std::min(plan.lens.max_radius * plan.lens.max_radius, 1e30);
@@ -204,7 +212,6 @@ void WarpPass::setLens(const Program& program, const hal::WarpPlan& plan) {
   glUniform3f(program.radial, narrow(k1), narrow(k2), narrow(k3));
   glUniform2f(program.tangential, narrow(p1), narrow(p2));
   glUniform1f(program.max_radius2, narrow(max_radius2));
-  glUniform1fv(program.narrowing, hal::EdgeMask::kPlaces, plan.edge.narrowing.data());
 }
 
 }  // namespace ui

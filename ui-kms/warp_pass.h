@@ -5,6 +5,7 @@
 #include <expected>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/gl/objects.h"
 #include "hal/scene.h"
@@ -47,8 +48,10 @@ class WarpPass {
     GLint gain_rgb = -1, opacity = -1;
     // The whole colour model only.
     GLint from_camera = -1, vignetting = -1, black = -1, centre_px = -1, source_px = -1;
+    // Soft and edge cells only.
+    GLint narrowing = -1;
     // Edge cells only.
-    GLint focal_px = -1, radial = -1, tangential = -1, max_radius2 = -1, narrowing = -1;
+    GLint focal_px = -1, radial = -1, tangential = -1, max_radius2 = -1;
   };
 
   WarpPass() = default;
@@ -57,11 +60,15 @@ class WarpPass {
                                                                        const std::string& fragment);
   [[nodiscard]] static gl::Buffer makePositions(const WarpMesh& cells, Orientation orientation);
   void makeBuffers(Mesh& mesh) const;
+  void drawCells(const std::vector<std::uint16_t>& indices, const Program& program,
+                 const hal::ViewLayer& layer, std::size_t& at);
   static void useFor(const Program& program, const hal::ViewLayer& layer);
   static void setColour(const Program& program, const hal::WarpPlan& plan);
   static void setLens(const Program& program, const hal::WarpPlan& plan);
 
-  std::array<std::array<Program, 2>, 2> inner_;  // by shader::Colour and Output
+  using ByColourAndOutput = std::array<std::array<Program, 2>, 2>;
+  ByColourAndOutput inner_;
+  ByColourAndOutput soft_;
   std::array<Program, 2> edge_;
   gl::Buffer positions_;  // of the corners: on the screen as it hangs, and upright
   std::array<std::optional<Mesh>, hal::Scene::kMostLayers> meshes_;

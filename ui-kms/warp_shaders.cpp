@@ -15,6 +15,19 @@ void main() {
 }
 )";
 
+constexpr const char* kSoftVertex = R"(#version 300 es
+layout(location = 0) in vec2 position;
+layout(location = 1) in vec3 texture_w;
+layout(location = 3) in vec2 upright;
+out vec3 at;
+out vec2 place;
+void main() {
+  at = texture_w;
+  place = upright;
+  gl_Position = vec4(position, 0.0, 1.0);
+}
+)";
+
 constexpr const char* kEdgeVertex = R"(#version 300 es
 layout(location = 0) in vec2 position;
 layout(location = 2) in vec3 ray_w;
@@ -59,7 +72,7 @@ vec3 encode(vec3 c) {
 constexpr const char* kInnerSeenGains = R"(
 uniform vec3 gain_rgb;
 in vec3 at;
-vec4 seen() { return vec4(textureProj(source, at).rgb * gain_rgb, 1.0); }
+vec4 seen() { return vec4(textureProj(source, at).rgb * gain_rgb, part()); }
 )";
 
 // From the stored value to linear light: hal::ColourModel. The gains are part of the matrix.
@@ -80,8 +93,12 @@ constexpr const char* kInnerSeenModel = R"(
 in vec3 at;
 vec4 seen() {
   vec2 at_px = at.xy / at.z * source_px - 0.5;
-  return vec4(light(textureProj(source, at).rgb, at_px), 1.0);
+  return vec4(light(textureProj(source, at).rgb, at_px), part());
 }
+)";
+
+constexpr const char* kInnerPart = R"(
+float part() { return 1.0; }
 )";
 
 // How much of the picture is shown at a place of the display, from -1 to 1 in both directions: what
@@ -100,6 +117,11 @@ float shownAt(vec2 p) {
       mix(narrowing[before & 63], narrowing[(before + 1) & 63], at - float(before));
   return smoothstep(0.0, 0.02, 1.0 - outwards * narrow);
 }
+)";
+
+constexpr const char* kSoftPart = R"(
+in vec2 place;
+float part() { return shownAt(place); }
 )";
 
 // The whole map per pixel. Outside the source a texel counts as unseen, which weighs the lookup by
@@ -154,6 +176,11 @@ std::string joined(std::initializer_list<const char*> pieces) {
   return all;
 }
 
+std::string seenInside(Colour colour, std::string before, const char* after) {
+  if (colour == Colour::kModel) before += kLight;
+  return before + (colour == Colour::kGains ? kInnerSeenGains : kInnerSeenModel) + after;
+}
+
 }  // namespace
 
 std::string innerVertex() {
@@ -162,16 +189,23 @@ std::string innerVertex() {
 std::string edgeVertex() {
   return kEdgeVertex;
 }
+std::string softVertex() {
+  return kSoftVertex;
+}
 std::string innerToScreen(Colour colour) {
-  return colour == Colour::kGains ? joined({kEncode, kInnerSeenGains, kToScreen})
-                                  : joined({kEncode, kLight, kInnerSeenModel, kToScreen});
+  return seenInside(colour, joined({kEncode, kInnerPart}), kToScreen);
+}
+std::string softToScreen(Colour colour) {
+  return seenInside(colour, joined({kEncode, kEdgeMask, kSoftPart}), kToScreen);
 }
 std::string edgeToScreen() {
   return joined({kEncode, kLight, kEdgeMask, kEdgeSeen, kToScreen});
 }
 std::string innerToLinear(Colour colour) {
-  return colour == Colour::kGains ? joined({kInnerSeenGains, kToLinear})
-                                  : joined({kLight, kInnerSeenModel, kToLinear});
+  return seenInside(colour, joined({kInnerPart}), kToLinear);
+}
+std::string softToLinear(Colour colour) {
+  return seenInside(colour, joined({kEdgeMask, kSoftPart}), kToLinear);
 }
 std::string edgeToLinear() {
   return joined({kLight, kEdgeMask, kEdgeSeen, kToLinear});

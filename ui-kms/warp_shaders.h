@@ -16,6 +16,7 @@ inline constexpr float kSurroundCode = 18.0F / 255;
 inline constexpr float kSurroundLight = 0.006048F;
 
 [[nodiscard]] std::string innerVertex();
+[[nodiscard]] std::string softVertex();
 [[nodiscard]] std::string edgeVertex();
 /// How a stored value becomes linear light.
 enum class Colour : std::uint8_t {
@@ -25,9 +26,11 @@ enum class Colour : std::uint8_t {
 
 /// sRGB, opaque.
 [[nodiscard]] std::string innerToScreen(Colour colour);
+[[nodiscard]] std::string softToScreen(Colour colour);
 [[nodiscard]] std::string edgeToScreen();
 /// Linear light times the layer's opacity, to be blended.
 [[nodiscard]] std::string innerToLinear(Colour colour);
+[[nodiscard]] std::string softToLinear(Colour colour);
 [[nodiscard]] std::string edgeToLinear();
 /// All pixels of the target, without attributes.
 [[nodiscard]] std::string everywhereVertex();

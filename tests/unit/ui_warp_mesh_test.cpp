@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -63,6 +64,53 @@ TEST(WarpMesh, CellsThatTheSourcesRimCrossesAreEvaluatedPerPixel) {
   mesh.update(planOf(40, 200));               // its right rim lies in the second of four columns
   EXPECT_EQ(mesh.innerIndices().size(), 0U);  // the first row and column touch the rim as well
   EXPECT_EQ(mesh.edgeIndices().size(), 2 * 2 * kPerCell);
+}
+
+/// A picture that reaches half way from the centre to the display's edge: from 64 to 192 px across,
+/// and from 32 to 96 px down.
+hal::WarpPlan halfMasked() {
+  auto plan = planOf(400, 400);
+  plan.H_camera_display[2] = 10;
+  plan.H_camera_display[5] = 10;
+  plan.edge.narrowing = hal::EdgeMask::everywhere(2);
+  return plan;
+}
+
+TEST(WarpMesh, CellsOutsideTheSharedEdgeAreNotDrawnAndThoseThatItCrossesAreSoft) {
+  WarpMesh mesh(256, 128);
+  auto plan = halfMasked();
+  plan.edge.narrowing = hal::EdgeMask::everywhere(2.05F);
+  mesh.update(plan);
+  EXPECT_EQ(mesh.innerIndices().size(), 0U);
+  EXPECT_EQ(mesh.softIndices().size(), 4 * 2 * kPerCell);
+  EXPECT_TRUE(mesh.edgeIndices().empty());
+  mesh.update(planOf(400, 400));
+  EXPECT_TRUE(mesh.softIndices().empty()) << "the edge of the picture before it";
+}
+
+TEST(WarpMesh, ACellIsDrawnIfOnlyACornerOfTheSharedEdgeReachesIntoIt) {
+  WarpMesh mesh(256, 128);
+  auto plan = halfMasked();
+  plan.edge.narrowing = hal::EdgeMask::everywhere(1'000);
+  // To the right, in the middle of the screen's right side: a spike into the cells around it.
+  plan.edge.narrowing[hal::EdgeMask::kPlacesPerSide * 3 / 2] = 1.2F;
+  mesh.update(plan);
+  const auto cellOf = [&mesh](std::size_t index) {
+    return mesh.softIndices()[index] % mesh.columns();
+  };
+  ASSERT_FALSE(mesh.softIndices().empty());
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < mesh.softIndices().size(); i += kPerCell)
+    farthest = std::max<std::size_t>(farthest, cellOf(i));
+  EXPECT_EQ(farthest, 7U);  // 128 + 128 / 1.2 = 234 px
+}
+
+TEST(WarpMesh, WhereTheSourceEndsInsideTheSharedEdgeTheCellIsEvaluatedPerPixel) {
+  WarpMesh mesh(256, 128);
+  auto plan = halfMasked();
+  plan.source.width_px = 130;  // ends at 120 px of the display
+  mesh.update(plan);
+  EXPECT_FALSE(mesh.edgeIndices().empty());
 }
 
 TEST(WarpMesh, BehindTheCameraThereIsNoCell) {
