@@ -15,6 +15,7 @@
 
 #include "tests/support/control_daemon.h"
 #include "tests/support/output_of.h"
+#include "tests/support/policed_bus.h"
 #include "tests/support/private_bus.h"
 #include "tests/support/temporary_folder.h"
 
@@ -103,36 +104,16 @@ TEST(ControlInterfaces, TheXmlFilesSayWhatTheRunningDaemonSays) {
   EXPECT_EQ(publishedFor("<node>"), seen("/org/kagami/Kagami1/jobs/1"));
 }
 
-// Users of every Debian, each in the group of its name. Two of these groups stand in for the
-// policy's groups, which the machine of the test need not have.
-constexpr const char* kViewer = "bin";
-constexpr const char* kOperator = "sys";
-constexpr const char* kAnybodyElse = "daemon";
+using test::kAnybodyElse;
+using test::kOperator;
+using test::kViewer;
 
 /// A system bus with the policy file that is installed.
 class Policy : public testing::Test {
  protected:
   void SetUp() override {
     if (geteuid() != 0) GTEST_SKIP() << "another user's calls can be made by root only";
-    std::string policy = contentOf(KAGAMI_POLICY);
-    policy = std::regex_replace(policy, std::regex("group=\"kagami-viewers\""),
-                                std::string("group=\"") + kViewer + "\"");
-    policy = std::regex_replace(policy, std::regex("group=\"kagami-operators\""),
-                                std::string("group=\"") + kOperator + "\"");
-    std::ofstream(folder_ / "kagami.conf") << policy;
-    std::ofstream(folder_ / "bus.conf")
-        << "<busconfig><listen>unix:path=" << (folder_ / "bus").string() << "</listen>"
-        << R"(<auth>EXTERNAL</auth><policy context="default"><allow user="*"/><deny own="*"/>
-              <deny send_type="method_call"/><allow send_type="signal"/>
-              <allow send_requested_reply="true" send_type="method_return"/>
-              <allow send_requested_reply="true" send_type="error"/>
-              <allow receive_type="method_call"/><allow receive_type="method_return"/>
-              <allow receive_type="error"/><allow receive_type="signal"/>
-              <allow send_destination="org.freedesktop.DBus"
-                     send_interface="org.freedesktop.DBus"/></policy><include>)"
-        << (folder_ / "kagami.conf").string() << "</include></busconfig>";
-    std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
-    bus_.emplace(std::vector<std::string>{"--config-file=" + (folder_ / "bus.conf").string()});
+    bus_.emplace(test::policedBusOptions(folder_.path()));
     if (bus_->address().empty()) GTEST_SKIP() << "dbus-daemon cannot be started here";
     daemon_.emplace(bus_->address(), box_, jobs_);
     ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();

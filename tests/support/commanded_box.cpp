@@ -4,6 +4,8 @@
 #include <thread>
 #include <utility>
 
+#include "tests/support/policed_bus.h"
+
 namespace test {
 namespace {
 
@@ -21,8 +23,10 @@ testing::AssertionResult comesTrue(const std::function<bool(std::string& answer)
 
 }  // namespace
 
-CommandedBox::CommandedBox(CameraNetwork network)
+CommandedBox::CommandedBox(CameraNetwork network, BusKind kind)
     : network_(std::move(network)),
+      bus_(kind == BusKind::kPoliced ? policedBusOptions(folder_.path())
+                                     : std::vector<std::string>{"--session"}),
       emulator_(emulatorCommand(network_, "448x320", folder_.path()), folder_ / "emulator.log") {}
 
 void CommandedBox::SetUp() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,11 +16,17 @@
 
 namespace test {
 
+/// Who may call the daemon of a test.
+enum class BusKind : std::uint8_t {
+  kOwnUser,  ///< a session bus: the user of the test, with every right
+  kPoliced,  ///< a system bus with the policy file that is installed; for tests run by root
+};
+
 /// The whole box for tests that speak with it: emulated cameras, kagamid on them, and the kagami
 /// command on a bus of their own. Skips where there is no dbus-daemon.
 class CommandedBox : public testing::Test {
  protected:
-  explicit CommandedBox(CameraNetwork network);
+  explicit CommandedBox(CameraNetwork network, BusKind kind = BusKind::kOwnUser);
 
   void SetUp() override;
   /// The daemon ends well, whatever the test did with it.
