@@ -118,6 +118,7 @@ Status Box::status() const {
   Status status{.degraded = remarks_.list()};
   parts_.report(status);
   addBoxSections(status, commands_);
+  remarkTrace(status, trace_.get());
   return status;
 }
 

@@ -20,6 +20,12 @@ void addBoxSections(Status& status, const CommandInbox& commands) {
   status.sections.push_back(std::move(refused));
 }
 
+void remarkTrace(Status& status, const TraceWriter* trace) {
+  if (trace == nullptr) return;
+  if (const std::string why = trace->failure(); !why.empty())
+    status.degraded.push_back(remarkOf("trace", phrase<Word::kTraceFailed>(why)));
+}
+
 RunRecord runRecord(const Shared& shared, const Status& status) {
   std::vector<std::string> degraded;
   for (const Remark& remark : status.degraded) degraded.push_back(remark.text);

@@ -14,7 +14,6 @@ namespace appliance {
 namespace {
 
 constexpr std::chrono::milliseconds kDrainEvery{100};  // a twentieth of what a ring holds
-constexpr std::size_t kFileBufferBytes = 256 * 1024;
 
 std::string describe(const std::string& path, int error) {
   return path + ": cannot write the trace: " + std::strerror(error);
@@ -40,14 +39,17 @@ TraceProducer& TraceWriter::addProducer(std::string name) {
   return *producers_.back();
 }
 
-TraceWriter::TraceWriter(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {
-  (void)std::setvbuf(file, nullptr, _IOFBF, kFileBufferBytes);
-}
+TraceWriter::TraceWriter(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {}
 
 std::uint64_t TraceWriter::dropped() const {
   std::uint64_t sum = 0;
   for (const auto& producer : producers_) sum += producer->dropped();
   return sum;
+}
+
+std::string TraceWriter::failure() const {
+  const int error = write_errno_.load();
+  return error == 0 ? std::string() : std::strerror(error);
 }
 
 std::expected<void, std::string> TraceWriter::finish(const SummaryRecord& summary) {
@@ -56,7 +58,7 @@ std::expected<void, std::string> TraceWriter::finish(const SummaryRecord& summar
   SummaryRecord complete = summary;
   complete.trace_dropped = dropped();
   write(toLine(complete));
-  if (write_errno_ == 0 && std::fflush(file_.get()) != 0) write_errno_ = errno;
+  flush();
   file_.reset();
   if (write_errno_ != 0) return std::unexpected(describe(path_, write_errno_));
   return {};
@@ -66,6 +68,7 @@ void TraceWriter::run(const std::stop_token& stop) {
   (void)pthread_setname_np(pthread_self(), "trace");
   while (!stop.stop_requested()) {
     drain();
+    flush();  // so that a full disk is noticed, and a power cut costs little
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, stop, kDrainEvery, [] { return false; });
   }
@@ -80,8 +83,15 @@ void TraceWriter::drain() {
 
 void TraceWriter::write(const std::string& text) {
   if (write_errno_ != 0 || text.empty()) return;
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size())
-    write_errno_ = errno != 0 ? errno : EIO;
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) fail();
+}
+
+void TraceWriter::flush() {
+  if (write_errno_ == 0 && std::fflush(file_.get()) != 0) fail();
+}
+
+void TraceWriter::fail() {
+  write_errno_ = errno != 0 ? errno : EIO;
 }
 
 }  // namespace appliance

@@ -41,10 +41,10 @@ class TraceProducer {
 /// Writes the trace file: one thread, SCHED_OTHER, empties the producers' rings a few times a
 /// second. Producers never wait for it; what it is too slow for is dropped and counted.
 ///
-/// Threads  All members: the owner. A producer: one thread.
+/// Threads  failure(), dropped(): any. All other members: the owner. A producer: one thread.
 /// Memory   All rings are made before begin(); the writer outlives its producers' last record().
-/// Errors   A file that cannot be made or written: one line for a person. Writing errors while
-///          running stop the writing, not the daemon, and are told by finish().
+/// Errors   A file that cannot be made or written: one line for a person. An error while running
+///          ends the writing, not the daemon: failure() says it immediately, finish() again.
 class TraceWriter {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<TraceWriter>, std::string> open(
@@ -64,6 +64,9 @@ class TraceWriter {
   /// Records that found a full ring so far, all producers together.
   [[nodiscard]] std::uint64_t dropped() const;
 
+  /// Why nothing is written any more; empty: everything is.
+  [[nodiscard]] std::string failure() const;
+
   /// After the producers' last record(): writes what is left, then the summary, and closes.
   [[nodiscard]] std::expected<void, std::string> finish(const SummaryRecord& summary);
 
@@ -76,10 +79,12 @@ class TraceWriter {
   void run(const std::stop_token& stop);
   void drain();
   void write(const std::string& text);
+  void flush();
+  void fail();
 
   std::string path_;
   std::unique_ptr<std::FILE, FileCloser> file_;
-  int write_errno_ = 0;  // the first one
+  std::atomic<int> write_errno_{0};  // the first one
   std::vector<std::unique_ptr<TraceProducer>> producers_;
   std::mutex mutex_;
   std::condition_variable_any wake_;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "appliance/trace/trace_file.h"
+#include "tests/support/becomes_true.h"
 
 namespace {
 
@@ -84,13 +85,15 @@ TEST(TraceWriter, SaysThatAFileCannotBeMade) {
   EXPECT_THAT(writer.error(), HasSubstr("/nonexistent/folder/trace.jsonl: cannot write the trace"));
 }
 
-TEST(TraceWriter, TellsAFullDiskAtTheEndAndGoesOnTillThen) {
+TEST(TraceWriter, SaysAFullDiskWhileItRunsAndAgainAtTheEnd) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
   auto writer = TraceWriter::open("/dev/full");
   ASSERT_TRUE(writer.has_value()) << writer.error();
   appliance::TraceProducer& producer = (*writer)->addProducer("one");
   (*writer)->begin({});
   for (std::uint64_t i = 1; i <= 500; ++i) producer.record(SetRecord{i, {}});
+  EXPECT_TRUE(test::becomesTrue([&] { return !(*writer)->failure().empty(); }));
+  EXPECT_THAT((*writer)->failure(), HasSubstr("No space left"));
   const auto finished = (*writer)->finish({});
   ASSERT_FALSE(finished.has_value());
   EXPECT_THAT(finished.error(), HasSubstr("No space left"));
