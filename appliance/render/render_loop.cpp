@@ -241,7 +241,7 @@ bool RenderLoop::show(const Wanted& wanted, const RigPin& rig,
     metrics_.skipped.add();
     return false;
   }
-  metrics_.committed(record.picture_id, *commit);
+  metrics_.committed(record.picture_id, *commit, parts_.display.timing());
   metrics_.draw.add(drawn_at - wake);
   if (shot.trigger != on_screen_.shot.trigger) metrics_.sets_shown.add();
   picture_id_ = record.picture_id;

@@ -65,6 +65,7 @@ class RenderPart final : public Part {
     metrics_.add("sets_shown", counted.sets_shown);
     metrics_.add("skipped", counted.skipped);
     metrics_.add("flips", counted.flips);
+    metrics_.add("flips_late", counted.flips_late);
     metrics_.add("draw", counted.draw);
     metrics_.add("ready_delay", counted.ready_delay);
     metrics_.add("commit_to_flip", counted.commit_to_flip);
