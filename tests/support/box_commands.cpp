@@ -34,9 +34,9 @@ std::vector<std::string> emulatorCommand(const CameraNetwork& network, const std
   return command;
 }
 
-std::vector<std::string> kagamidCommand(const CameraNetwork& network,
-                                        const std::filesystem::path& folder,
-                                        const std::vector<std::string>& settings) {
+std::vector<std::string> kagamidSettings(const CameraNetwork& network,
+                                         const std::filesystem::path& folder,
+                                         const std::vector<std::string>& settings) {
   std::vector<std::string> all{"rig.file=" + (folder / "rig.toml").string(),
                                "cameras.addresses=" + addressesOf(network),
                                "cameras.packet_size_bytes=1500",
@@ -47,8 +47,15 @@ std::vector<std::string> kagamidCommand(const CameraNetwork& network,
                                "display.zoom=1",  // the whole frame, its stamp included
                                "control.bus=none"};
   all.insert(all.end(), settings.begin(), settings.end());
+  return all;
+}
+
+std::vector<std::string> kagamidCommand(const CameraNetwork& network,
+                                        const std::filesystem::path& folder,
+                                        const std::vector<std::string>& settings) {
   std::vector<std::string> command{KAGAMID, "--config", KAGAMID_CONFIG};
-  for (const std::string& setting : all) command.insert(command.end(), {"--set", setting});
+  for (const std::string& setting : kagamidSettings(network, folder, settings))
+    command.insert(command.end(), {"--set", setting});
   return command;
 }
 

@@ -19,8 +19,13 @@ struct CameraNetwork {
                                                        const std::filesystem::path& folder,
                                                        const std::vector<std::string>& more = {});
 
-/// kagamid on those cameras and on no bus, slow and small enough for any machine; it says
-/// "running:". @p settings are "key=value" and hold over those made here.
+/// "key=value", of a daemon on those cameras and on no bus, slow and small enough for any machine.
+/// @p settings hold over those made here.
+[[nodiscard]] std::vector<std::string> kagamidSettings(
+    const CameraNetwork& network, const std::filesystem::path& folder,
+    const std::vector<std::string>& settings = {});
+
+/// kagamid with those settings; it says "running:".
 [[nodiscard]] std::vector<std::string> kagamidCommand(
     const CameraNetwork& network, const std::filesystem::path& folder,
     const std::vector<std::string>& settings = {});
