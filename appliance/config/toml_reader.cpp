@@ -1,16 +1,12 @@
 #include "appliance/config/toml_reader.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <toml++/toml.h>
 
+#include "appliance/config/text_file.h"
 #include "appliance/config/toml_text.h"
 #include "rt/printable.h"
 
@@ -55,16 +51,9 @@ TomlFile& TomlFile::operator=(TomlFile&& other) noexcept = default;
 TomlFile::~TomlFile() = default;
 
 std::expected<TomlFile, std::string> TomlFile::load(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in)
-    return std::unexpected(path + ": cannot be opened (" + std::strerror(errno) +
-                           "); check the path and its permissions");
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    return std::unexpected(path + ": is a folder; name the file in it");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse(text.view(), path);
+  const auto text = readTextFile(path);
+  if (!text) return std::unexpected(text.error());
+  return parse(*text, path);
 }
 
 std::expected<TomlFile, std::string> TomlFile::parse(std::string_view text, std::string name) {

@@ -1,13 +1,10 @@
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "appliance/config/text_file.h"
+#include "appliance/config/toml_reader.h"
 #include "appliance/control/control_client.h"
 #include "appliance/tools/commands.h"
 #include "appliance/tools/metrics_listing.h"
@@ -90,11 +89,11 @@ void releaseScreen(const ControlPlace& place, std::vector<std::string> command) 
 }
 
 void loadRig(const ControlPlace& place, const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) fail(path + ": cannot be read (" + std::strerror(errno) + ")");
-  const auto warnings = connect(place).loadRig(text.str(), path);
+  const auto text = readTextFile(path);
+  if (!text) fail(text.error());
+  // The bus would refuse other text than UTF-8 without saying why.
+  if (const auto parsed = TomlFile::parse(*text, path); !parsed) fail(parsed.error());
+  const auto warnings = connect(place).loadRig(*text, path);
   if (!warnings) fail(warnings.error());
   std::fputs(warnings->c_str(), stderr);
   std::printf("%s: in use until kagamid ends\n", path.c_str());

@@ -1,6 +1,9 @@
 // What a maintainer types: kagami speaks over a bus with the running kagamid, which shows what
 // emulated cameras send.
 
+#include <algorithm>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -66,6 +69,38 @@ TEST_F(CommandLine, RefusesWhatIsNotThereInOneLineAndStaysAsItWas) {
   }
   EXPECT_TRUE(becomes(
       [](const json& status) { return status["mode"] == "live" && status["view_wanted"] == 1; }));
+}
+
+TEST_F(CommandLine, RefusesAFileThatIsNoRigOfThisBoxInOneLineAndReadsANewerFormat) {
+  ASSERT_TRUE(becomes([](const json& status) { return status["shown_hz"] > 0; }));
+  std::stringstream rig;
+  rig << std::ifstream(folder() / "rig.toml").rdbuf();
+  const std::string text = rig.str();
+  const std::string body = text.substr(text.find('\n'));  // without its line "format = N"
+  struct Case {
+    std::string name, text, says;
+  };
+  for (const Case& bad :
+       std::vector<Case>{{"binary", "\xff\xfe\x01 = 1", "binary:1: not valid TOML"},
+                         {"empty", "", "the key \"format\" is missing"},
+                         {"word", "format = \"two\"" + body, "format must be a whole number"},
+                         {"other", "format = 1\n" + body.substr(0, body.rfind("[[camera]]")),
+                          "this rig has 1 cameras, 2 are running"}}) {
+    std::ofstream(folder() / bad.name) << bad.text;
+    const Answer answer = kagami({"rig", "load", folder() / bad.name});
+    EXPECT_NE(answer.exit_status, 0) << bad.name;
+    EXPECT_NE(answer.text.find(bad.says), std::string::npos) << answer.text;
+    EXPECT_EQ(std::ranges::count(answer.text, '\n'), 1) << answer.text;
+  }
+  for (const std::string place : {"/dev/zero", "/tmp", "/nonexistent"})
+    EXPECT_NE(kagami({"rig", "load", place}).exit_status, 0) << place;
+
+  std::ofstream(folder() / "newer") << "format = 3\nbeyond = 1" + body;
+  const Answer newer = kagami({"rig", "load", folder() / "newer"});
+  EXPECT_EQ(newer.exit_status, 0) << newer.text;
+  EXPECT_NE(newer.text.find("format 3 is newer"), std::string::npos) << newer.text;
+  EXPECT_NE(newer.text.find("unknown key \"beyond\""), std::string::npos) << newer.text;
+  EXPECT_TRUE(becomes([](const json& status) { return status["shown_hz"] > 0; }));
 }
 
 TEST_F(CommandLine, TellsTheStateInWordsToo) {

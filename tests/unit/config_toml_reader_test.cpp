@@ -143,6 +143,9 @@ TEST(TomlReader, SaysThatAFileIsMissingOrNotAFile) {
   const auto folder = TomlFile::load("/tmp");
   ASSERT_FALSE(folder.has_value());
   EXPECT_THAT(folder.error(), HasSubstr("/tmp: is a folder"));
+  const auto endless = TomlFile::load("/dev/zero");
+  ASSERT_FALSE(endless.has_value());
+  EXPECT_THAT(endless.error(), HasSubstr("/dev/zero: is larger than 4 MiB"));
 }
 
 TEST(ClosestWord, PrefersTheSmallestEditDistance) {
