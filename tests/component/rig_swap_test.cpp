@@ -168,7 +168,7 @@ class RigSwap : public testing::Test {
     for (std::uint64_t number = 1; number <= kSwaps; ++number) {
       rt::sleepUntil(begin + number * kBetweenSwaps);
       const auto loaded = box_->loadRig(texts_[number], "calibration");
-      ASSERT_TRUE(loaded.has_value()) << loaded.error();
+      ASSERT_TRUE(loaded.has_value()) << "calibration " << number;
       if (number % 100 != 0) continue;
       const auto camera = static_cast<std::uint32_t>(number / 100) % rigs_[0].cameras.size();
       using Command = appliance::Command;
