@@ -144,15 +144,26 @@ wait_for_line() {  # PID LOG PATTERN TENTHS: 1 when it did not come
 # A run writes into memory where there is room, so that no disk works on the measured processors;
 # FOLDER/run leads there meanwhile and is the folder itself afterwards.
 scratch=
-scratch_parent=/dev/shm
+scratch_parent=/dev/shm  # what is made there has our process id in its name
 scratch_kib=2097152  # film and trace of a run of ten minutes
+
+# A demo that was killed could not remove what it had there.
+remove_stale() {
+  for path in "$scratch_parent"/kagami-demo.*.* "$scratch_parent"/kagami-demo-depth.*; do
+    [ -O "$path" ] || continue
+    owner=${path#"$scratch_parent"/kagami-demo*.}
+    owner=${owner%%.*}
+    case $owner in ''|*[!0-9]*) continue ;; esac
+    [ -d "/proc/$owner" ] || rm -rf "$path"
+  done
+}
 
 make_run() {  # FOLDER
   rm -rf "$1/run"
   mkdir -p "$1"
   free_kib=$(df -kP "$scratch_parent" 2>/dev/null | awk 'NR == 2 { print $4 }')
   if [ "${free_kib:-0}" -ge "$scratch_kib" ]; then
-    scratch=$(mktemp -d "$scratch_parent/kagami-demo.XXXXXX") || scratch=
+    scratch=$(mktemp -d "$scratch_parent/kagami-demo.$$.XXXXXX") || scratch=
   fi
   if [ -n "$scratch" ]; then ln -s "$scratch" "$1/run"; else mkdir "$1/run"; fi
   scratch_link=$1/run
@@ -163,7 +174,7 @@ keep_run() {
   [ -n "$scratch" ] || return 0
   chmod 755 "$scratch"
   rm -f "$scratch_link"
-  mv "$scratch" "$scratch_link" || say "what was recorded stays in $scratch" >&2
+  mv "$scratch" "$scratch_link" || say "what was recorded stays in $scratch until the next demo" >&2
   scratch=
 }
 
@@ -491,6 +502,7 @@ run_recording() {  # FOLDER
 }
 
 # ---- what was asked for --------------------------------------------------------------------
+remove_stale
 mkdir -p "$out" || fail "--out $out cannot be made"
 out=$(cd -- "$out" && pwd)
 verdict=0
