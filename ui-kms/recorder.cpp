@@ -37,7 +37,7 @@ std::expected<std::unique_ptr<Recorder>, std::string> Recorder::create(const Rec
       {.name = "recorder"},
       [self = recorder.get()](const std::stop_token& stop) { self->write(stop); });
   if (!thread) return std::unexpected(std::string("recorder: ") + thread.error().where);
-  recorder->thread_ = std::move(*thread);
+  recorder->thread_.thread() = std::move(*thread);
   return recorder;
 }
 
@@ -49,16 +49,7 @@ Recorder::Recorder(const RecorderConfig& config, hal::DisplayMode mode, PictureS
   }
 }
 
-Recorder::~Recorder() {
-  stopWriter();
-}
-
-void Recorder::stopWriter() {
-  if (!thread_.joinable()) return;
-  thread_.requestStop();
-  doorbell_.ring();
-  thread_.join();
-}
+Recorder::~Recorder() = default;
 
 bool Recorder::filmDue(rt::Timestamp commit) {
   if (commit < next_film_) return false;
@@ -114,7 +105,7 @@ void Recorder::write(const std::stop_token& stop) {
 }
 
 std::expected<RecorderCost, std::string> Recorder::finish() {
-  stopWriter();
+  thread_.stop();
   cost_.writer_cpu_ns = writer_cpu_ns_;
   if (auto done = files_->finish(); !done) return std::unexpected(done.error());
   return cost_;

@@ -12,8 +12,8 @@
 #include "hal/display.h"
 #include "rt/clock.h"
 #include "rt/doorbell.h"
+#include "rt/ringed_thread.h"
 #include "rt/spsc_ring.h"
-#include "rt/thread.h"
 #include "ui-kms/picture_source.h"
 #include "ui-kms/recorder_files.h"
 
@@ -64,7 +64,6 @@ class Recorder {
   [[nodiscard]] bool filmDue(rt::Timestamp commit);
   [[nodiscard]] bool tryKeep(const PictureStamp& stamp, std::string_view still_name, bool film);
   void write(const std::stop_token& stop);
-  void stopWriter();
 
   PictureSource& source_;
   rt::Nanoseconds film_period_;
@@ -80,7 +79,7 @@ class Recorder {
   RecorderCost cost_;
   std::optional<std::uint32_t> spare_;  // taken from free_, but its picture was not read
 
-  rt::Thread thread_;  // last: ends before what it works with
+  rt::RingedThread thread_{doorbell_};  // last: ends before what it works with
 };
 
 }  // namespace ui

@@ -4,8 +4,8 @@
 
 namespace appliance {
 
-std::expected<rt::Thread, std::string> Threads::start(
-    const std::string& name, const ThreadSchedule& how,
+std::expected<void, std::string> Threads::startInto(
+    rt::Thread& thread, const std::string& name, const ThreadSchedule& how,
     std::function<void(const std::stop_token&)> body) {
   auto started = rt::Thread::start(threadConfig(name, how), std::move(body));
   if (!started) {
@@ -17,7 +17,8 @@ std::expected<rt::Thread, std::string> Threads::start(
     if (require_) return std::unexpected(textOf(plain));
     remarks_.add("thread " + name, plain);
   }
-  return std::move(*started);
+  thread = std::move(*started);
+  return {};
 }
 
 }  // namespace appliance

@@ -19,10 +19,11 @@ class Threads {
   /// @p require: a thread without its real-time priority is an error, not a remark.
   Threads(bool require, Remarks& remarks) : require_(require), remarks_(remarks) {}
 
-  /// @p name: as in the table of docs/real-time.md.
-  /// Errors  One line: the thread cannot be made, or may not run as required.
-  [[nodiscard]] std::expected<rt::Thread, std::string> start(
-      const std::string& name, const ThreadSchedule& how,
+  /// Starts a thread and puts it into @p thread. @p name: as in the table of docs/real-time.md.
+  /// Errors  One line: the thread cannot be made, or may not run as required. Then @p thread stays
+  ///         as it was.
+  [[nodiscard]] std::expected<void, std::string> startInto(
+      rt::Thread& thread, const std::string& name, const ThreadSchedule& how,
       std::function<void(const std::stop_token&)> body);
 
  private:

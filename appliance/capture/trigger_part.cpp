@@ -49,16 +49,13 @@ class TriggerPart final : public Part {
 
   [[nodiscard]] std::expected<void, std::string> start() override {
     if (loopback_loop_) {
-      auto thread = shared_.threads.start("loopback", {},
-                                          [this](const auto& stop) { loopback_loop_->run(stop); });
-      if (!thread) return std::unexpected(thread.error());
-      loopback_thread_ = std::move(*thread);
+      auto started =
+          shared_.threads.startInto(loopback_thread_, "loopback", {},
+                                    [this](const auto& stop) { loopback_loop_->run(stop); });
+      if (!started) return started;
     }
-    auto thread = shared_.threads.start("trigger", shared_.config.realtime.trigger,
-                                        [this](const auto& stop) { loop_.run(stop); });
-    if (!thread) return std::unexpected(thread.error());
-    thread_ = std::move(*thread);
-    return {};
+    return shared_.threads.startInto(thread_, "trigger", shared_.config.realtime.trigger,
+                                     [this](const auto& stop) { loop_.run(stop); });
   }
 
   void stop() override {

@@ -38,10 +38,8 @@ class DepthPart final : public Part {
   [[nodiscard]] std::string_view name() const override { return "depth"; }
 
   [[nodiscard]] std::expected<void, std::string> start() override {
-    auto thread = shared_.threads.start("depth", {}, [this](const auto& stop) { loop_.run(stop); });
-    if (!thread) return std::unexpected(thread.error());
-    thread_ = std::move(*thread);
-    return {};
+    return shared_.threads.startInto(thread_, "depth", {},
+                                     [this](const auto& stop) { loop_.run(stop); });
   }
 
   void stop() override { thread_ = {}; }

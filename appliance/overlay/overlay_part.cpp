@@ -6,6 +6,7 @@
 
 #include "appliance/box/shared.h"
 #include "appliance/overlay/overlay_loop.h"
+#include "rt/ringed_thread.h"
 
 namespace appliance {
 namespace {
@@ -13,23 +14,18 @@ namespace {
 class OverlayPart final : public Part {
  public:
   OverlayPart(const Shared& shared, hal::Typesetter& typesetter)
-      : shared_(shared), loop_(shared.overlay, typesetter) {}
+      : shared_(shared),
+        loop_(shared.overlay, typesetter),
+        thread_(shared.overlay.subject_changed) {}
 
   [[nodiscard]] std::string_view name() const override { return "overlay"; }
 
   [[nodiscard]] std::expected<void, std::string> start() override {
-    auto thread = shared_.threads.start("ui", {}, [this](const auto& stop) { loop_.run(stop); });
-    if (!thread) return std::unexpected(thread.error());
-    thread_ = std::move(*thread);
-    return {};
+    return shared_.threads.startInto(thread_.thread(), "ui", {},
+                                     [this](const auto& stop) { loop_.run(stop); });
   }
 
-  void stop() override {
-    if (!thread_.joinable()) return;
-    thread_.requestStop();
-    shared_.overlay.subject_changed.ring();
-    thread_ = {};
-  }
+  void stop() override { thread_.stop(); }
 
   void report(Status& status) const override {
     if (std::string warning = loop_.warning(); !warning.empty())
@@ -39,7 +35,7 @@ class OverlayPart final : public Part {
  private:
   const Shared& shared_;
   OverlayLoop loop_;
-  rt::Thread thread_;
+  rt::RingedThread thread_;
 };
 
 }  // namespace

@@ -28,11 +28,8 @@ class PanelPart final : public Part {
   [[nodiscard]] std::string_view name() const override { return "panel"; }
 
   [[nodiscard]] std::expected<void, std::string> start() override {
-    auto thread = shared_.threads.start("panel", shared_.config.realtime.panel,
-                                        [this](const auto& stop) { loop_.run(stop); });
-    if (!thread) return std::unexpected(thread.error());
-    thread_ = std::move(*thread);
-    return {};
+    return shared_.threads.startInto(thread_, "panel", shared_.config.realtime.panel,
+                                     [this](const auto& stop) { loop_.run(stop); });
   }
 
   void stop() override { thread_ = {}; }

@@ -11,6 +11,7 @@
 #include "appliance/metrics/rate_meter.h"
 #include "appliance/render/history_views.h"
 #include "appliance/render/render_loop.h"
+#include "rt/ringed_thread.h"
 
 namespace appliance {
 namespace {
@@ -59,7 +60,8 @@ class RenderPart final : public Part {
         source_path_(sourcePath(shared)),
         frames_(reader, shared.board.edges),
         loop_(partsOf(shared, frames_), parametersOf(shared.config)),
-        metrics_(shared.metrics.group("render")) {
+        metrics_(shared.metrics.group("render")),
+        thread_(shared.board.wake_render) {
     const RenderMetrics& counted = loop_.metrics();
     metrics_.add("pictures", counted.pictures);
     metrics_.add("sets_shown", counted.sets_shown);
@@ -74,19 +76,11 @@ class RenderPart final : public Part {
   [[nodiscard]] std::string_view name() const override { return "render"; }
 
   [[nodiscard]] std::expected<void, std::string> start() override {
-    auto thread = shared_.threads.start("render", shared_.config.realtime.render,
-                                        [this](const auto& stop) { loop_.run(stop); });
-    if (!thread) return std::unexpected(thread.error());
-    thread_ = std::move(*thread);
-    return {};
+    return shared_.threads.startInto(thread_.thread(), "render", shared_.config.realtime.render,
+                                     [this](const auto& stop) { loop_.run(stop); });
   }
 
-  void stop() override {
-    if (!thread_.joinable()) return;
-    thread_.requestStop();
-    shared_.board.wake_render.ring();
-    thread_ = {};
-  }
+  void stop() override { thread_.stop(); }
 
   void report(Status& status) const override {
     const RenderStatus render = loop_.status();
@@ -134,7 +128,7 @@ class RenderPart final : public Part {
   mutable RenderLoop loop_;  // status() takes the newest of a hand-over
   MetricsGroup metrics_;
   mutable RateMeter shown_rate_;
-  rt::Thread thread_;
+  rt::RingedThread thread_;
 };
 
 static_assert(kRenderPins == RenderLoop::kPinsPerCamera);

@@ -38,7 +38,7 @@ std::set<std::string> namesInCode(const SourceFile& file) {
       R"re(hreadConfig\s*\w*\s*[({]\s*(?:\.name\s*=\s*)?"([a-z]+[%0-9a-z]*)")re");
   static const std::regex kStart(
       R"re(Thread::start\s*\(\s*\{\s*(?:\.name\s*=\s*)?"([a-z]+[%0-9a-z]*)")re");
-  static const std::regex kHelper(R"re(hreads\.start\s*\(\s*"([a-z]+[%0-9a-z]*)")re");
+  static const std::regex kHelper(R"re(hreads\.startInto\s*\([^",]*,\s*"([a-z]+[%0-9a-z]*)")re");
   static const std::regex kNumbered(R"re(ThreadName\([^"}]*\{[^"}]*"([a-z]+%[0-9a-z]*)")re");
   static const std::regex kKernel(R"re(pthread_setname_np\s*\([^;"]*"([a-z]+[%0-9a-z]*)")re");
   std::set<std::string> names;
@@ -67,7 +67,7 @@ TEST(ThreadNames, AreReadFromTheCode) {
       namesInCode({.path = "a.cpp",
                    .lines = {"const rt::ThreadConfig config{.name = \"trigger\",",
                              "auto t = rt::Thread::start({.name = \"render\", .priority = 60}, f);",
-                             "auto thread = shared_.threads.start(\"panel\", how, body);",
+                             "return shared_.threads.startInto(thread_, \"panel\", how, body);",
                              "std::string receiveThreadName(std::size_t camera) {",
                              "  std::snprintf(name, sizeof name, \"recv%02zu\", camera);",
                              "pthread_setname_np(pthread_self(), \"trace\");"}}),

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <optional>
 #include <thread>
 
@@ -8,7 +9,9 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include "rt/clock.h"
 #include "rt/limits.h"
+#include "rt/ringed_thread.h"
 #include "rt/thread.h"
 
 namespace {
@@ -135,6 +138,26 @@ TEST(Thread, MovesWithItsRunningBody) {
   first.join();
   EXPECT_EQ(ended, 2);
   EXPECT_FALSE(first.joinable());
+}
+
+TEST(RingedThread, WakesABodyThatWaitsForItsBellAndEndsIt) {
+  rt::Doorbell bell;
+  std::atomic<int> ended{0};
+  const auto wait_for_bell = [&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) (void)bell.waitUntil(rt::now() + std::chrono::hours(1));
+    ++ended;
+  };
+  {
+    rt::RingedThread thread(bell);
+    thread.stop();
+    EXPECT_EQ(ended, 0) << "nothing was started";
+    thread.thread() = mustStart({.name = "ringed"}, wait_for_bell);
+    thread.stop();
+    EXPECT_EQ(ended, 1);
+    thread.stop();
+    thread.thread() = mustStart({.name = "ringed"}, wait_for_bell);
+  }
+  EXPECT_EQ(ended, 2) << "the destructor rings, too";
 }
 
 TEST(Thread, ConfiguresThreadsThatALibraryMade) {

@@ -24,10 +24,8 @@ class SamplePart final : public Part {
   [[nodiscard]] std::string_view name() const override { return "sample"; }
 
   [[nodiscard]] std::expected<void, std::string> start() override {
-    auto thread = shared_.threads.start("sample", {}, [this](const auto& stop) { run(stop); });
-    if (!thread) return std::unexpected(thread.error());
-    thread_ = std::move(*thread);
-    return {};
+    return shared_.threads.startInto(thread_, "sample", {},
+                                     [this](const auto& stop) { run(stop); });
   }
 
   void stop() override { thread_ = {}; }
