@@ -18,7 +18,7 @@
 #include "appliance/config/config.h"
 #include "appliance/journal/log.h"
 #include "appliance/loop/event_loop.h"
-#include "appliance/picture_recorder.h"
+#include "appliance/record/picture_recorder.h"
 #include "appliance/service/box_service.h"
 #include "appliance/site/site.h"
 #include "appliance/site/site_light.h"
@@ -53,7 +53,7 @@ std::vector<ui::SizePx> sourceSizes(const Rig& rig) {
   return sizes;
 }
 
-ui::RendererConfig rendererConfig(const Config::Display& config, const Rig& rig) {
+ui::RendererConfig rendererConfig(const DisplaySettings& config, const Rig& rig) {
   return {.width_px = config.width_px,
           .height_px = config.height_px,
           .rotation_deg = config.rotation_deg,
@@ -70,7 +70,7 @@ Screen screenOf(std::unique_ptr<Display> display) {
 }
 
 /// @p missing: why there is no screen, in one line; empty if the configuration asks for none.
-std::expected<Screen, std::string> makeOffscreen(const Config::Display& config, const Rig& rig,
+std::expected<Screen, std::string> makeOffscreen(const DisplaySettings& config, const Rig& rig,
                                                  const std::string& missing) {
   hal::ScreenStatus status;
   if (!missing.empty()) status.state = hal::ScreenState::kNoScreen;

@@ -11,59 +11,6 @@
 namespace appliance {
 namespace {
 
-void read(Section section, Config::Display& display) {
-  section.word("backend", display.backend);
-  section.text("device", display.device);
-  section.text("mode", display.mode);
-  section.integer("queue_depth", display.queue_depth, {1, 2, "pictures"});
-  section.integer("width_px", display.width_px, {64, 7680, "px"});
-  section.integer("height_px", display.height_px, {64, 4320, "px"});
-  section.number("refresh_hz", display.refresh_hz, {1, 480, "Hz"});
-  section.integer("rotation_deg", display.rotation_deg, {0, 270, "degrees"});
-  if (display.rotation_deg % 90 != 0) {
-    section.fail("rotation_deg", "rotation_deg must be 0, 90, 180 or 270");
-  }
-  section.numberOrWord("zoom", display.zoom, {0.1, 20}, "cover");
-  section.integer("render_threads", display.render_threads, {1, 64, "threads"});
-  section.word("font", display.font);
-  section.flag("flicker_compensation", display.flicker_compensation);
-  section.end();
-}
-
-void read(Section section, Config::Director& director) {
-  section.numbers("delay_ladder_s", director.delay_ladder_s, {0.01, 3600, "s"});
-  section.number("sweep_views_per_s", director.sweep_views_per_s, {0.1, 240, "views/s"});
-  section.number("idle_home_s", director.idle_home_s, {0, 86400, "s"});
-  section.end();
-  const auto& ladder = director.delay_ladder_s;
-  if (ladder.empty() || std::ranges::adjacent_find(ladder, std::greater_equal{}) != ladder.end())
-    section.fail("delay_ladder_s", "delay_ladder_s must be one or more rising delays");
-}
-
-void read(Section section, Config::Record& record) {
-  section.text("directory", record.directory);
-  section.number("video_hz", record.video_hz, {1, 240, "Hz"});
-  section.integer("video_width_px", record.video_width_px, {64, 7680, "px"});
-  section.end();
-}
-
-void read(Section section, Config::Rig& rig) {
-  section.word("file", rig.file);
-  section.end();
-}
-
-void read(Section section, Config::State& state) {
-  section.word("directory", state.directory);
-  section.text("trace", state.trace);
-  section.end();
-}
-
-void read(Section section, Config::Control& control) {
-  section.word("bus", control.bus);
-  section.word("name", control.name);
-  section.end();
-}
-
 /// What holds only between keys, whichever layer set them.
 void checkTogether(const TomlTable& root, const Config& config) {
   const double period_us = 1e6 / config.trigger.rate_hz;

@@ -1,87 +1,44 @@
 #pragma once
 
-#include <cstdint>
 #include <expected>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "appliance/box/realtime_settings.h"
+#include "appliance/box/state_settings.h"
 #include "appliance/capture/capture_settings.h"
+#include "appliance/control/control_settings.h"
 #include "appliance/depth/depth_settings.h"
+#include "appliance/director/director_settings.h"
 #include "appliance/light/light_settings.h"
 #include "appliance/network/network_settings.h"
 #include "appliance/panel/panel_settings.h"
+#include "appliance/record/record_settings.h"
+#include "appliance/render/display_settings.h"
+#include "appliance/site/rig_settings.h"
 
 namespace appliance {
 
-/// Everything a site sets. A folder that has settings owns their struct; what stands here belongs
-/// to the box as a whole. The defaults here are the values in the installed
-/// appliance/config/kagamid.toml, which documents every key; a test holds the two equal.
+/// Everything a site sets. The folder that uses a setting owns its struct and reads it. The
+/// defaults there are the values in the installed appliance/config/kagamid.toml, which documents
+/// every key; a test holds the two equal.
 struct Config {
-  struct Rig {
-    std::string file = "/etc/kagami/rig.toml";
-    bool operator==(const Rig&) const = default;
-  };
-
-  struct Display {
-    std::string backend = "offscreen";
-    std::string device;  ///< empty: the first card with a screen
-    std::string mode;    ///< "1920x1080@59.94"; empty: the best for the trigger rate
-    std::uint32_t queue_depth = 1;
-    std::uint32_t width_px = 1280;
-    std::uint32_t height_px = 720;
-    double refresh_hz = 80;
-    std::uint32_t rotation_deg = 0;  ///< how far the screen is turned, clockwise
-    std::optional<double> zoom;      ///< none: "cover", the smallest that leaves no border
-    std::uint32_t render_threads = 2;
-    std::string font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-    bool flicker_compensation = false;
-    bool operator==(const Display&) const = default;
-  };
-
-  struct Director {
-    std::vector<double> delay_ladder_s{0.5, 1, 2, 3, 5, 7, 10, 15, 20, 30};
-    double sweep_views_per_s = 10;
-    double idle_home_s = 0;  ///< 0: never
-    bool operator==(const Director&) const = default;
-  };
-
-  struct Record {
-    std::string directory;  ///< empty: nothing is recorded
-    double video_hz = 20;
-    std::uint32_t video_width_px = 640;
-    bool operator==(const Record&) const = default;
-  };
-
-  struct State {
-    std::string directory = "/var/lib/kagami";
-    std::string trace;  ///< empty: no trace is written
-    bool operator==(const State&) const = default;
-  };
-
-  struct Control {
-    std::string bus = "system";  ///< system, session, none or a D-Bus address
-    std::string name = "org.kagami.Kagami1";
-    bool operator==(const Control&) const = default;
-  };
-
-  Rig rig;
+  RigSettings rig;
   CamerasSettings cameras;
   NetworkSettings network;
   ResendSettings resend;
   LightSettings light;
   TriggerSettings trigger;
   HistorySettings history;
-  Display display;
+  DisplaySettings display;
   PanelSettings panel;
   DepthSettings depth_sensor;
-  Director director;
-  Record record;
+  DirectorSettings director;
+  RecordSettings record;
   RealtimeSettings realtime;
-  State state;
-  Control control;
+  StateSettings state;
+  ControlSettings control;
   std::vector<std::string> warnings;  ///< what was read and has no effect, one line each
   bool operator==(const Config&) const = default;
 };

@@ -16,7 +16,7 @@
 namespace appliance {
 namespace {
 
-std::vector<rt::Nanoseconds> delayLadder(const Config::Director& config) {
+std::vector<rt::Nanoseconds> delayLadder(const DirectorSettings& config) {
   std::vector<rt::Nanoseconds> ladder;
   for (const double delay_s : config.delay_ladder_s) ladder.push_back(microseconds(delay_s * 1e6));
   return ladder;

@@ -1,4 +1,4 @@
-#include "appliance/picture_recorder.h"
+#include "appliance/record/picture_recorder.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -16,7 +16,7 @@ constexpr std::uint32_t kViewSettled = 2;
 }  // namespace
 
 std::expected<std::unique_ptr<PictureRecorder>, std::string> PictureRecorder::create(
-    const Config::Record& config, hal::DisplayMode mode, ui::PictureSource& source) {
+    const RecordSettings& config, hal::DisplayMode mode, ui::PictureSource& source) {
   std::error_code error;
   std::filesystem::create_directories(config.directory, error);
   if (error) {

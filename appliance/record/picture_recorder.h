@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "appliance/config/config.h"
 #include "appliance/geometry/rig.h"
+#include "appliance/record/record_settings.h"
 #include "appliance/render/picture_observer.h"
 #include "ui-kms/picture_source.h"
 #include "ui-kms/recorder.h"
@@ -21,7 +21,7 @@ namespace appliance {
 class PictureRecorder final : public PictureObserver {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<PictureRecorder>, std::string> create(
-      const Config::Record& config, hal::DisplayMode mode, ui::PictureSource& source);
+      const RecordSettings& config, hal::DisplayMode mode, ui::PictureSource& source);
 
   void onPicture(const ShownPicture& picture) noexcept override;
 
