@@ -13,6 +13,7 @@
 #include "hal/gpiod/panel.h"
 #include "hal/gpiod/trigger_line.h"
 #include "hal/openni/folder_sensor.h"
+#include "hal/openni/folder_writer.h"
 #include "hal/openni/openni_sensor.h"
 
 namespace hal {
@@ -94,6 +95,10 @@ Opened<DepthSensor> openDepthSensor(std::string_view backend, const DepthSensorS
         openni::FolderSensor::open({.folder = settings.source, .repeat = settings.repeat}));
   }
   return std::unexpected(unknown("depth_sensor", backend, R"("none", "openni", "folder")"));
+}
+
+std::unique_ptr<DepthRecorder> makeDepthRecorder(const std::string& folder) {
+  return std::make_unique<openni::FolderWriter>(folder, openni::ColourFile::kPng);
 }
 
 }  // namespace hal

@@ -12,6 +12,7 @@
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "hal/camera_profile.h"
+#include "hal/depth_recorder.h"
 #include "hal/depth_sensor.h"
 #include "hal/edge_input.h"
 #include "hal/trigger_line.h"
@@ -57,5 +58,8 @@ struct TriggerLineSettings {
 /// backend "openni" or "folder". A sensor that is not there is no error: it is looked for.
 [[nodiscard]] Opened<DepthSensor> openDepthSensor(std::string_view backend,
                                                   const DepthSensorSettings& settings);
+
+/// Makes a recording as a folder of pictures at @p folder, which does not exist yet.
+[[nodiscard]] std::unique_ptr<DepthRecorder> makeDepthRecorder(const std::string& folder);
 
 }  // namespace hal

@@ -3,37 +3,35 @@
 #include <cstdint>
 #include <expected>
 #include <filesystem>
-#include <fstream>
 #include <string>
+#include <utility>
 
-#include "hal/depth_sensor.h"
+#include "hal/depth_recorder.h"
 #include "rt/clock.h"
 
 namespace hal::openni {
 
 enum class ColourFile : std::uint8_t { kPng, kJpeg };
 
-/// Writes a sensor's pictures as a folder: folder_recording.h says what it holds.
-///
-/// Threads  One caller.
-/// Errors   One line for a person: the folder holds something already, the disk is full.
-class FolderWriter {
+/// Writes a sensor's pictures as a folder: folder_recording.h says what it holds. The first frame
+/// makes the folder.
+class FolderWriter final : public DepthRecorder {
  public:
   FolderWriter(std::filesystem::path folder, ColourFile colour)
       : folder_(std::move(folder)), colour_(colour) {}
 
-  /// @p name: the sensor's. The first frame makes the folder.
   [[nodiscard]] std::expected<void, std::string> write(const DepthFrame& frame,
-                                                       const std::string& name);
+                                                       const std::string& sensor) override;
   [[nodiscard]] std::uint64_t written() const { return written_; }
 
  private:
   [[nodiscard]] std::expected<void, std::string> begin(const DepthFrame& frame,
-                                                       const std::string& name);
+                                                       const std::string& sensor);
+  [[nodiscard]] std::expected<void, std::string> writeColour(const DepthFrame& frame,
+                                                             const std::string& stem);
 
   std::filesystem::path folder_;
   ColourFile colour_;
-  std::ofstream stamps_;
   rt::Timestamp first_;
   std::uint64_t written_ = 0;
 };
