@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include <systemd/sd-bus.h>
 
 namespace appliance {
@@ -13,5 +16,10 @@ struct BusObject {
   const sd_bus_vtable* vtable;
   void* target;  ///< what the callbacks get
 };
+
+/// Where a job is shown: what a method that starts one answers.
+[[nodiscard]] inline std::string jobPath(std::uint32_t id) {
+  return "/org/kagami/Kagami1/jobs/" + std::to_string(id);
+}
 
 }  // namespace appliance

@@ -1,7 +1,9 @@
 #include "appliance/control/control_client.h"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 namespace appliance {
@@ -20,6 +22,11 @@ struct Exchange {
   sd_bus_message* reply = nullptr;
 };
 
+constexpr const char* kNoDepthSensor =
+    "this box runs without a depth sensor: see kagami status, and depth_sensor.backend in "
+    "kagamid.toml";
+constexpr const char* kNoSuchJob = "kagamid does not know that job any more: was it started again?";
+
 ControlClient::Answer withoutReply(const std::expected<std::string, std::string>& called) {
   if (!called) return std::unexpected(called.error());
   return {};
@@ -37,32 +44,43 @@ std::expected<ControlClient, std::string> ControlClient::open(const std::string&
   return ControlClient(std::move(*opened), describeBus(bus), name);
 }
 
+std::string ControlClient::reasonOf(const sd_bus_error& error, int result, const char* method,
+                                    const Object& object) const {
+  if (sd_bus_error_has_name(&error, SD_BUS_ERROR_UNKNOWN_OBJECT) != 0) return object.missing;
+  if (sd_bus_error_has_name(&error, SD_BUS_ERROR_SERVICE_UNKNOWN) != 0 ||
+      sd_bus_error_has_name(&error, SD_BUS_ERROR_NAME_HAS_NO_OWNER) != 0)
+    return "kagamid is not running, or has lost " + bus_name_ + " and tries again each 5 s (no " +
+           name_ + " there): systemctl status kagamid; systemctl start kagamid";
+  if (sd_bus_error_has_name(&error, SD_BUS_ERROR_ACCESS_DENIED) != 0)
+    return std::string(method) + " is not permitted on " + bus_name_ +
+           ": be root, or join the group kagami-operators (to operate) or kagami-viewers (to look)";
+  return error.message != nullptr ? error.message : std::strerror(-result);
+}
+
+template <class... Arguments>
+std::expected<std::string, std::string> ControlClient::callAt(const Object& object,
+                                                              const char* interface,
+                                                              const char* method, const char* types,
+                                                              Arguments... arguments) {
+  Exchange exchange;
+  const int r = sd_bus_call_method(bus_.get(), name_.c_str(), object.path, interface, method,
+                                   &exchange.error, &exchange.reply, types, arguments...);
+  if (r < 0) return std::unexpected(reasonOf(exchange.error, r, method, object));
+  const char* text = "";
+  for (const char type : {'s', 'o'}) {
+    const std::array<char, 2> signature = {type, '\0'};
+    if (sd_bus_message_has_signature(exchange.reply, signature.data()) != 0 &&
+        sd_bus_message_read_basic(exchange.reply, type, &text) < 0)
+      return std::unexpected("kagamid's answer cannot be read");
+  }
+  return std::string(text);
+}
+
 template <class... Arguments>
 std::expected<std::string, std::string> ControlClient::call(const char* interface,
                                                             const char* method, const char* types,
                                                             Arguments... arguments) {
-  Exchange exchange;
-  const int r = sd_bus_call_method(bus_.get(), name_.c_str(), kControlPath, interface, method,
-                                   &exchange.error, &exchange.reply, types, arguments...);
-  if (r < 0) {
-    if (sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_SERVICE_UNKNOWN) != 0 ||
-        sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_NAME_HAS_NO_OWNER) != 0)
-      return std::unexpected("kagamid is not running, or has lost " + bus_name_ +
-                             " and tries again each 5 s (no " + name_ +
-                             " there): systemctl status kagamid; systemctl start kagamid");
-    if (sd_bus_error_has_name(&exchange.error, SD_BUS_ERROR_ACCESS_DENIED) != 0)
-      return std::unexpected(
-          std::string(method) + " is not permitted on " + bus_name_ +
-          ": be root, or join the group kagami-operators (to operate) or kagami-viewers "
-          "(to look)");
-    return std::unexpected(exchange.error.message != nullptr ? exchange.error.message
-                                                             : std::strerror(-r));
-  }
-  const char* text = "";
-  if (sd_bus_message_has_signature(exchange.reply, "s") != 0 &&
-      sd_bus_message_read(exchange.reply, "s", &text) < 0)
-    return std::unexpected("kagamid's answer cannot be read");
-  return std::string(text);
+  return callAt({kControlPath, "kagamid offers nothing"}, interface, method, types, arguments...);
 }
 
 ControlClient::Answer ControlClient::setMode(const std::string& mode) {
@@ -106,6 +124,44 @@ ControlClient::Answer ControlClient::takeScreen() {
 std::expected<std::string, std::string> ControlClient::loadRig(const std::string& text,
                                                                const std::string& name) {
   return call(kMaintenanceInterface, "LoadRig", "ss", text.c_str(), name.c_str());
+}
+
+std::expected<std::string, std::string> ControlClient::snapshotDepth(std::uint32_t pairs) {
+  return callAt({kDepthPath, kNoDepthSensor}, kDepthInterface, "Snapshot", "u", pairs);
+}
+
+std::expected<JobReport, std::string> ControlClient::job(const std::string& path) {
+  Exchange exchange;
+  const int r =
+      sd_bus_call_method(bus_.get(), name_.c_str(), path.c_str(), "org.freedesktop.DBus.Properties",
+                         "GetAll", &exchange.error, &exchange.reply, "s", kJobInterface);
+  if (r < 0)
+    return std::unexpected(reasonOf(exchange.error, r, "GetAll", {path.c_str(), kNoSuchJob}));
+  JobReport report;
+  std::string state;
+  const auto take = [&](std::string_view name) {
+    const char* text = nullptr;
+    if (name == "Progress") return sd_bus_message_read(exchange.reply, "v", "d", &report.progress);
+    const int read = sd_bus_message_read(exchange.reply, "v", "s", &text);
+    if (read > 0 && name == "State") state = text;
+    if (read > 0 && name == "Result") report.result = text;
+    return read;
+  };
+  int read = sd_bus_message_enter_container(exchange.reply, 'a', "{sv}");
+  while (read >= 0 && (read = sd_bus_message_enter_container(exchange.reply, 'e', "sv")) > 0) {
+    const char* name = nullptr;
+    read = sd_bus_message_read(exchange.reply, "s", &name);
+    if (read > 0) read = take(name);
+    if (read > 0) read = sd_bus_message_exit_container(exchange.reply);
+  }
+  const auto known = jobStateOf(state);
+  if (read < 0 || !known) return std::unexpected("kagamid's answer cannot be read");
+  report.state = *known;
+  return report;
+}
+
+ControlClient::Answer ControlClient::cancelJob(const std::string& path) {
+  return withoutReply(callAt({path.c_str(), kNoSuchJob}, kJobInterface, "Cancel", ""));
 }
 
 std::expected<std::string, std::string> ControlClient::status() {

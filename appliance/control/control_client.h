@@ -6,6 +6,7 @@
 #include <string>
 
 #include "appliance/control/bus.h"
+#include "appliance/jobs/job_work.h"
 
 namespace appliance {
 
@@ -36,6 +37,11 @@ class ControlClient {
   /// What was ignored in it, one line each.
   [[nodiscard]] std::expected<std::string, std::string> loadRig(const std::string& text,
                                                                 const std::string& name);
+  /// The path of the job that writes the depth sensor's newest @p pairs.
+  [[nodiscard]] std::expected<std::string, std::string> snapshotDepth(std::uint32_t pairs);
+  /// How the job of that path stands.
+  [[nodiscard]] std::expected<JobReport, std::string> job(const std::string& path);
+  [[nodiscard]] Answer cancelJob(const std::string& path);
   /// The JSON of appliance::toJson(Status).
   [[nodiscard]] std::expected<std::string, std::string> status();
   /// The JSON of appliance::toJson(MetricsSnapshot).
@@ -43,9 +49,20 @@ class ControlClient {
 
  private:
   ControlClient(Bus bus, std::string bus_name, std::string name);
+  struct Object {
+    const char* path;
+    const char* missing;  ///< the reason if it is not there
+  };
+  /// A method of the box itself; its answer is nothing or one text.
   template <class... Arguments>
   std::expected<std::string, std::string> call(const char* interface, const char* method,
                                                const char* types, Arguments... arguments);
+  template <class... Arguments>
+  std::expected<std::string, std::string> callAt(const Object& object, const char* interface,
+                                                 const char* method, const char* types,
+                                                 Arguments... arguments);
+  [[nodiscard]] std::string reasonOf(const sd_bus_error& error, int result, const char* method,
+                                     const Object& object) const;
 
   Bus bus_;
   std::string bus_name_;

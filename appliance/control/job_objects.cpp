@@ -10,12 +10,12 @@
 
 #include "appliance/control/bus.h"
 #include "appliance/control/bus_callbacks.h"
+#include "appliance/control/bus_object.h"
 #include "appliance/control/bus_values.h"
 
 namespace appliance {
 namespace {
 
-constexpr const char* kJobInterface = "org.kagami.Kagami1.Job";
 constexpr const char* kJobsPath = "/org/kagami/Kagami1/jobs";
 
 JobId idOf(std::string_view path) {
@@ -64,7 +64,7 @@ int onList(sd_bus* /*bus*/, const char* /*prefix*/, void* jobs, char*** nodes,
     auto** list = static_cast<char**>(std::calloc(ids.size() + 1, sizeof(char*)));
     if (list == nullptr) return -ENOMEM;
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      list[i] = strdup(JobObjects::pathOf(ids[i]).c_str());
+      list[i] = strdup(jobPath(ids[i]).c_str());
       if (list[i] != nullptr) continue;
       for (std::size_t j = 0; j < i; ++j) std::free(list[j]);
       std::free(static_cast<void*>(list));
@@ -88,10 +88,6 @@ const auto kTable = std::to_array<sd_bus_vtable>({
 
 }  // namespace
 
-std::string JobObjects::pathOf(JobId id) {
-  return std::string(kJobsPath) + "/" + std::to_string(id);
-}
-
 int JobObjects::offer(sd_bus* bus) {
   int r = sd_bus_add_object_manager(bus, nullptr, kControlPath);
   if (r >= 0) r = sd_bus_add_node_enumerator(bus, nullptr, kJobsPath, onList, &jobs_);
@@ -106,17 +102,17 @@ void JobObjects::tick(sd_bus* bus) {
   if (bus == nullptr) return;
   // A failure means a bus that is being lost; the link sees that itself.
   for (const JobId id : changes.begun) {
-    (void)sd_bus_emit_object_added(bus, pathOf(id).c_str());
+    (void)sd_bus_emit_object_added(bus, jobPath(id).c_str());
     const std::string owner = jobs_.find(id) != nullptr ? jobs_.find(id)->owner : "";
     // An owner that cannot be watched has left already.
     if (!owner.empty() && peers_.add(bus, owner) < 0) jobs_.ownerLeft(owner);
   }
   for (const JobId id : changes.changed)
-    (void)sd_bus_emit_properties_changed(bus, pathOf(id).c_str(), kJobInterface, "State",
+    (void)sd_bus_emit_properties_changed(bus, jobPath(id).c_str(), kJobInterface, "State",
                                          "Progress", "Result", nullptr);
   // The object is gone already, so that sd_bus_emit_object_removed() would find no interfaces.
   for (const JobId id : changes.forgotten)
-    (void)sd_bus_emit_interfaces_removed(bus, pathOf(id).c_str(), kJobInterface, nullptr);
+    (void)sd_bus_emit_interfaces_removed(bus, jobPath(id).c_str(), kJobInterface, nullptr);
 }
 
 }  // namespace appliance

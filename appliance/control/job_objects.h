@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include <systemd/sd-bus.h>
 
 #include "appliance/control/peer_watch.h"
@@ -24,8 +22,6 @@ class JobObjects {
 
   /// Polls the jobs, and signals on @p bus what changed; null: no bus.
   void tick(sd_bus* bus);
-
-  [[nodiscard]] static std::string pathOf(JobId id);
 
  private:
   JobRegistry& jobs_;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,9 +11,18 @@ namespace appliance {
 
 enum class JobState : std::uint8_t { kRunning, kDone, kFailed, kCancelled };
 
+inline constexpr std::array<std::string_view, 4> kJobStates = {"running", "done", "failed",
+                                                               "cancelled"};
+
 [[nodiscard]] constexpr std::string_view nameOf(JobState state) {
-  constexpr std::array<std::string_view, 4> kNames = {"running", "done", "failed", "cancelled"};
-  return kNames[static_cast<std::size_t>(state)];
+  return kJobStates[static_cast<std::size_t>(state)];
+}
+
+/// None: no state has that name.
+[[nodiscard]] constexpr std::optional<JobState> jobStateOf(std::string_view name) {
+  for (std::size_t i = 0; i < kJobStates.size(); ++i)
+    if (kJobStates[i] == name) return static_cast<JobState>(i);
+  return std::nullopt;
 }
 
 /// How a job stands.
