@@ -11,6 +11,7 @@
 #include "appliance/box/shared.h"
 #include "appliance/control/bus_callbacks.h"
 #include "appliance/control/bus_object.h"
+#include "appliance/jobs/job_thread.h"
 #include "rt/periodic_loop.h"
 
 namespace appliance {
@@ -47,6 +48,8 @@ class SamplePart final : public Part {
   }
 
   void reset() { turns_ = 0; }
+  /// The job ends when the part has counted this many more.
+  [[nodiscard]] std::expected<JobId, std::string> count(std::uint32_t turns);
   [[nodiscard]] std::int64_t turns() const { return turns_.load(); }
 
  private:
@@ -63,6 +66,20 @@ class SamplePart final : public Part {
   rt::Thread thread_;
 };
 
+std::expected<JobId, std::string> SamplePart::count(std::uint32_t turns) {
+  auto work = JobThread::start([this, turns, begin = turns_.load()](JobThread::Progress& progress,
+                                                                    const std::stop_token& stop) {
+    for (std::int64_t done = 0; done < turns && !stop.stop_requested();) {
+      rt::sleepUntil(rt::now() + settings_.period);
+      done = turns_.load() - begin;
+      progress.set(static_cast<double>(done) / turns);
+    }
+    return JobThread::Result(std::to_string(turns) + " turns");
+  });
+  if (!work) return std::unexpected(work.error());
+  return shared_.jobs.start({.kind = "sample-count", .owner = "", .work = std::move(*work)});
+}
+
 int getTurns(SamplePart& part, const char* /*property*/, sd_bus_message* reply) {
   return sd_bus_message_append(reply, "x", part.turns());
 }
@@ -72,10 +89,19 @@ int callReset(SamplePart& part, sd_bus_message* message, sd_bus_error* /*error*/
   return sd_bus_reply_method_return(message, "");
 }
 
+int callCount(SamplePart& part, sd_bus_message* message, sd_bus_error* error) {
+  std::uint32_t turns = 0;
+  if (const int r = sd_bus_message_read(message, "u", &turns); r < 0) return r;
+  const auto job = part.count(turns);
+  if (!job) return refuse(error, job.error());
+  return sd_bus_reply_method_return(message, "o", jobPath(*job).c_str());
+}
+
 const auto kTable = std::to_array<sd_bus_vtable>({
     SD_BUS_VTABLE_START(0),
     SD_BUS_PROPERTY("Turns", "x", (onProperty<SamplePart, getTurns>), 0, 0),
     SD_BUS_METHOD("Reset", "", "", (onMethod<SamplePart, callReset>), SD_BUS_VTABLE_UNPRIVILEGED),
+    SD_BUS_METHOD("Count", "u", "o", (onMethod<SamplePart, callCount>), SD_BUS_VTABLE_UNPRIVILEGED),
     SD_BUS_VTABLE_END,
 });
 
