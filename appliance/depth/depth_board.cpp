@@ -137,6 +137,11 @@ std::optional<PinnedDepth> DepthReader::tryNext() noexcept {
   return std::nullopt;
 }
 
+void DepthReader::seekBack(std::uint64_t pairs) noexcept {
+  const std::uint64_t newest = board_.newest();
+  last_ = std::max(newest - std::min(newest, pairs), board_.oldest() - 1);
+}
+
 DepthReaderStatus DepthReader::status() const {
   return {.name = name_,
           .pins = pins_,

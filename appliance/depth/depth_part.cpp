@@ -1,12 +1,17 @@
 #include "appliance/depth/depth_part.h"
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "appliance/box/shared.h"
 #include "appliance/depth/depth_loop.h"
 #include "appliance/depth/depth_settings.h"
+#include "appliance/depth/depth_snapshot.h"
+#include "appliance/depth/depth_snapshot_jobs.h"
 #include "appliance/depth/depth_text.h"
 #include "hal/backends.h"
 
@@ -30,10 +35,16 @@ StatusSection sectionOf(const DepthReport& report) {
 
 class DepthPart final : public Part {
  public:
-  DepthPart(const Shared& shared, std::unique_ptr<hal::DepthSensor> sensor, DepthReader& reader)
+  /// @p status_reader has one pin, @p snapshot_reader kSnapshotPins.
+  DepthPart(const Shared& shared, std::unique_ptr<hal::DepthSensor> sensor,
+            DepthReader& status_reader, DepthReader& snapshot_reader)
       : shared_(shared),
         loop_(std::move(sensor), shared.depth),
-        sight_(std::make_unique<DepthSightReader>(reader)) {}
+        sight_(std::make_unique<DepthSightReader>(status_reader)),
+        snapshots_({.jobs = shared.jobs,
+                    .reader = snapshot_reader,
+                    .parent = std::filesystem::path(shared.config.state.directory) / "depth",
+                    .sensor_name = [this] { return loop_.report().sensor.name; }}) {}
 
   [[nodiscard]] std::string_view name() const override { return "depth"; }
 
@@ -52,10 +63,15 @@ class DepthPart final : public Part {
       status.degraded.push_back(remarkOf("depth", trouble));
   }
 
+  void addBusObjects(std::vector<BusObject>& objects) override {
+    objects.push_back(snapshots_.busObject());
+  }
+
  private:
   const Shared& shared_;
   DepthLoop loop_;
   const std::unique_ptr<DepthSightReader> sight_;  // main's
+  DepthSnapshotJobs snapshots_;
   rt::Thread thread_;
 };
 
@@ -69,9 +85,11 @@ MadePart makeDepthPart(const Shared& shared) {
     shared.remarks.add("depth", phrase<Word::kDepthMissing>(sensor.error()));
     return nullptr;
   }
-  auto reader = shared.depth.openReader("status", 1);
-  if (!reader) return std::unexpected(reader.error());
-  return std::make_unique<DepthPart>(shared, std::move(*sensor), **reader);
+  auto status = shared.depth.openReader("status", 1);
+  if (!status) return std::unexpected(status.error());
+  auto snapshot = shared.depth.openReader("snapshot", kSnapshotPins);
+  if (!snapshot) return std::unexpected(snapshot.error());
+  return std::make_unique<DepthPart>(shared, std::move(*sensor), **status, **snapshot);
 }
 
 }  // namespace appliance

@@ -80,6 +80,9 @@ class DepthReader {
   [[nodiscard]] std::optional<PinnedDepth> tryNewest() noexcept;
   /// The pair after the last one. Pairs that were overwritten meanwhile are counted as lost.
   [[nodiscard]] std::optional<PinnedDepth> tryNext() noexcept;
+  /// Moves the cursor, so that tryNext() begins with the newest @p pairs that the board keeps.
+  /// Nothing counts as lost by this.
+  void seekBack(std::uint64_t pairs) noexcept;
   /// True as soon as a pair came since the last true; false at @p deadline.
   [[nodiscard]] bool waitUntil(rt::Timestamp deadline) noexcept {
     return bell_.waitUntil(deadline);

@@ -27,7 +27,8 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place);
 void addMetricsCommand(CLI::App& kagami, const ControlPlace& place);
 void addConfigCommand(CLI::App& kagami);
 void addPlanCommand(CLI::App& kagami);
-void addDepthCommand(CLI::App& kagami);
+/// depth. @p place outlives the parsing.
+void addDepthCommand(CLI::App& kagami, const ControlPlace& place);
 void addReportCommand(CLI::App& kagami);
 void addTraceCommand(CLI::App& kagami);
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <random>
@@ -11,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "appliance/config/config.h"
+#include "appliance/control/control_client.h"
 #include "appliance/depth/depth_loop.h"
 #include "appliance/depth/depth_record.h"
 #include "appliance/depth/depth_settings.h"
@@ -19,6 +22,8 @@
 #include "appliance/depth/latency.h"
 #include "appliance/panel/panel_settings.h"
 #include "appliance/tools/commands.h"
+#include "appliance/tools/job_progress.h"
+#include "appliance/tools/moved_folder.h"
 #include "hal/backends.h"
 
 namespace appliance {
@@ -151,13 +156,53 @@ void latency(const Options& options) {
               measured->correlation);
 }
 
+struct SnapshotOptions {
+  std::filesystem::path out;  // empty: where kagamid wrote it
+  std::uint32_t pairs = 1;
+};
+
+void snapshot(const ControlPlace& place, const SnapshotOptions& options) {
+  if (!options.out.empty())
+    if (const auto free = checkNewFolder(options.out); !free) fail(free.error());
+  const HeldSignals signals;
+  auto client = ControlClient::open(place.bus, place.name);
+  if (!client) fail(client.error());
+  const auto job = client->snapshotDepth(options.pairs);
+  if (!job) fail(job.error());
+  std::filesystem::path folder = followJob(*client, *job, signals);
+  if (!options.out.empty()) {
+    const auto moved = moveFolder(folder, options.out);
+    if (!moved) fail(moved.error());
+    if (!moved->empty()) std::fprintf(stderr, "kagami: %s\n", moved->c_str());
+    folder = options.out;
+  }
+  std::printf("%s: %u pairs\n", folder.c_str(), options.pairs);
+}
+
+void addSnapshotCommand(CLI::App& depth, const ControlPlace& place) {
+  const auto options = std::make_shared<SnapshotOptions>();
+  CLI::App* command = depth.add_subcommand(
+      "snapshot", "Write what the running box sees as a folder; Ctrl-C gives up");
+  command->add_option("--out", options->out,
+                      "a new folder; without it the snapshot stays in [state] directory");
+  command
+      ->add_option("--frames", options->pairs, "pairs of pictures: the newest, and those that come")
+      ->check(CLI::Range(1U, 900U))
+      ->capture_default_str();
+  command->callback([&place, options] { snapshot(place, *options); });
+}
+
 }  // namespace
 
-void addDepthCommand(CLI::App& kagami) {
+void addDepthCommand(CLI::App& kagami, const ControlPlace& place) {
   const auto options = std::make_shared<Options>();
-  CLI::App* depth = kagami.add_subcommand("depth", "Watch the depth sensor, measure its latency");
+  CLI::App* depth = kagami.add_subcommand(
+      "depth", "Watch the depth sensor, measure its latency, keep what it sees");
   depth->require_subcommand(1);
-  depth->footer("kagamid must not run: a sensor serves one program.");
+  depth->footer(
+      "For watch and latency kagamid must not run, because a sensor serves one program; snapshot "
+      "asks the running kagamid.");
+  addSnapshotCommand(*depth, place);
   const auto add = [&](const char* name, const char* what) {
     CLI::App* command = depth->add_subcommand(name, what);
     command->add_option("--config", options->config)->capture_default_str();

@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   appliance::addMetricsCommand(kagami, place);
   appliance::addConfigCommand(kagami);
   appliance::addPlanCommand(kagami);
-  appliance::addDepthCommand(kagami);
+  appliance::addDepthCommand(kagami, place);
   appliance::addTraceCommand(kagami);
   appliance::addReportCommand(kagami);
   appliance::addFilmCommand(kagami);

@@ -6,7 +6,6 @@
 #include <optional>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -14,6 +13,7 @@
 #include <unistd.h>
 
 #include "tests/support/control_daemon.h"
+#include "tests/support/interface_members.h"
 #include "tests/support/output_of.h"
 #include "tests/support/policed_bus.h"
 #include "tests/support/private_bus.h"
@@ -21,52 +21,11 @@
 
 namespace {
 
+using test::contentOf;
+using test::membersOf;
 using test::outputOf;
 using testing::HasSubstr;
 using testing::Not;
-
-std::string contentOf(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::string attribute(const std::string& tag, const std::string& name) {
-  std::smatch found;
-  return std::regex_search(tag, found, std::regex(" " + name + "=\"([^\"]*)\"")) ? found.str(1)
-                                                                                 : "";
-}
-
-/// Every member of our interfaces as one line, whatever the layout of the XML.
-std::set<std::string> membersOf(std::string xml) {
-  xml = std::regex_replace(xml, std::regex("<!--[^]*?-->"), "");
-  std::set<std::string> members;
-  std::string interface;
-  std::string member;
-  static const std::regex kTag("<(interface|method|signal|property|arg|annotation)( [^>]*)>");
-  for (std::sregex_iterator it(xml.begin(), xml.end(), kTag), end; it != end; ++it) {
-    const std::string kind = it->str(1);
-    const std::string tag = it->str(2);
-    const std::string name = attribute(tag, "name");
-    if (kind == "interface") {
-      interface = name;
-      continue;
-    }
-    if (!interface.starts_with("org.kagami.")) continue;
-    if (kind == "arg") {
-      members.insert(member + " argument " + name + " " + attribute(tag, "type") + " " +
-                     attribute(tag, "direction"));
-    } else if (kind == "annotation") {
-      members.insert(member + " " + name + " " + attribute(tag, "value"));
-    } else {
-      member = interface + "." + name;
-      members.insert(member + " " + kind + " " + attribute(tag, "type") + " " +
-                     attribute(tag, "access"));
-    }
-  }
-  return members;
-}
 
 /// A work that runs until it is cancelled.
 class Endless : public appliance::JobWork {
@@ -139,10 +98,11 @@ constexpr const char* kLook = "org.kagami.Kagami1 Status";
 constexpr const char* kReadAll = "org.freedesktop.DBus.Properties GetAll s org.kagami.Kagami1";
 constexpr const char* kOperate = "org.kagami.Kagami1.Control SetView u 3";
 constexpr const char* kMaintain = "org.kagami.Kagami1.Maintenance ReleaseScreen";
+constexpr const char* kSnapshot = "org.kagami.Kagami1.Depth Snapshot u 1";
 constexpr const char* kDenied = "Access denied";
 
 TEST_F(Policy, AnybodyElseGetsNothing) {
-  for (const char* call : {kLook, kReadAll, kOperate, kMaintain})
+  for (const char* call : {kLook, kReadAll, kOperate, kMaintain, kSnapshot})
     EXPECT_THAT(answerTo(kAnybodyElse, call), HasSubstr(kDenied)) << call;
   EXPECT_TRUE(box_.commands().empty());
 }
@@ -150,7 +110,7 @@ TEST_F(Policy, AnybodyElseGetsNothing) {
 TEST_F(Policy, AViewerLooksAndDoesNothing) {
   EXPECT_THAT(answerTo(kViewer, kLook), HasSubstr("view_wanted"));
   EXPECT_THAT(answerTo(kViewer, kReadAll), HasSubstr("\"Mode\""));
-  for (const char* call : {kOperate, kMaintain})
+  for (const char* call : {kOperate, kMaintain, kSnapshot})
     EXPECT_THAT(answerTo(kViewer, call), HasSubstr(kDenied)) << call;
   EXPECT_TRUE(box_.commands().empty());
 }
@@ -160,6 +120,7 @@ TEST_F(Policy, AnOperatorLooksAndOperates) {
   EXPECT_THAT(answerTo(kOperator, kOperate), Not(HasSubstr(kDenied)));
   EXPECT_EQ(box_.commands().size(), 1U);
   EXPECT_THAT(answerTo(kOperator, kMaintain), HasSubstr(kDenied));
+  EXPECT_THAT(answerTo(kOperator, kSnapshot), HasSubstr(kDenied));
 }
 
 TEST_F(Policy, RootMaintains) {

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -37,6 +39,24 @@ TEST_F(DepthDaemon, TellsHowItsSensorFares) {
   // Pictures a second are known after the first second of pictures.
   EXPECT_TRUE(becomes([](const json& status) { return status.at("shown_hz") > 0; }));
   EXPECT_EQ(status().at("frames_lost"), 0) << "the cameras never noticed";
+}
+
+TEST_F(DepthDaemon, WritesASnapshotWhileItRuns) {
+  const test::DepthFeed feed;
+  startDaemon({"depth_sensor.backend=openni",
+               std::string("depth_sensor.drivers=") + KAGAMI_DEPTH_DRIVERS,
+               "depth_sensor.width_px=320", "depth_sensor.height_px=240",
+               "state.directory=" + (folder() / "state").string()});
+  ASSERT_TRUE(says("depth    streaming: "));
+  const auto taken =
+      kagami({"depth", "snapshot", "--frames", "10", "--out", folder() / "snapshot"});
+  EXPECT_EQ(taken.exit_status, 0) << taken.text;
+  for (const char* pictures : {"depth", "colour"}) {
+    std::error_code none;
+    const std::filesystem::directory_iterator files(folder() / "snapshot" / pictures, none);
+    EXPECT_EQ(std::distance(begin(files), end(files)), 10) << pictures;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder() / "state" / "depth"));
 }
 
 TEST_F(DepthDaemon, RunsWithoutASensorThatCannotBeOpened) {
