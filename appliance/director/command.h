@@ -34,6 +34,9 @@ struct Command {
     kCompare,     ///< lay a second shot beside or over the first: `composition`; kSingle: none
     kReplay,      ///< what was shown in the last `delay`, at `rate`; then go on as before
   };
+  /// kCompare: the second shot shows the view that the first one shows.
+  static constexpr std::uint32_t kSameView = ~std::uint32_t{0};
+
   Kind kind = Kind::kGoLive;
   std::uint32_t camera = 0;  ///< kSetView, kCompare (of the second shot), from 0
   rt::Nanoseconds delay{};   ///< kSetDelay, kReplay; kCompare: of the second shot behind the first

@@ -137,17 +137,22 @@ Shot Director::decide(const Available& at, const Presentation& picture) RT_SAFE 
   return shot;
 }
 
-/// Where the second frame is not there the first one is shown alone: no other moment stands in for
+/// If the second frame is not there, the first one is shown alone: no other moment stands in for
 /// it. While live its camera may be a few microseconds later, so a trigger earlier will do.
 void Director::decideSecond(const Available& at, Shot& shot) const RT_SAFE {
   const std::uint64_t back = at.inTriggers(comparison_->delay);
-  if (shot.trigger <= back || comparison_->camera >= at.cameras) return;
+  const std::uint32_t camera = comparison_->camera.value_or(shot.camera_shown);
+  shot.second_earlier = comparison_->delay;
+  shot.second_missing = true;
+  if (shot.trigger <= back || camera >= at.cameras) return;
   const std::uint64_t wanted = shot.trigger - back;
+  if (stopped_ && back != 0) shot.hold_second = wanted;
   const bool earlier_will_do = !stopped_ && wanted > 1;
   for (const std::uint64_t trigger : {wanted, earlier_will_do ? wanted - 1 : wanted}) {
-    if (!at.stored.holds(comparison_->camera, trigger)) continue;
+    if (!at.stored.holds(camera, trigger)) continue;
     shot.composition = comparison_->composition;
-    shot.second = {.camera = comparison_->camera, .trigger = trigger};
+    shot.second = {.camera = camera, .trigger = trigger};
+    shot.second_missing = false;
     return;
   }
 }

@@ -67,8 +67,8 @@ class Director {
   /// A second shot: another view, or the view some time earlier, in the same picture.
   struct Comparison {
     Composition composition;
-    std::uint32_t camera = 0;
-    rt::Nanoseconds delay{};  // behind the first shot
+    std::optional<std::uint32_t> camera;  // none: the first shot's
+    rt::Nanoseconds delay{};              // behind the first shot
   };
   struct Stop {
     std::uint64_t trigger = 0;

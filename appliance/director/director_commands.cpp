@@ -196,12 +196,18 @@ CommandOutcome Director::startReplay(const Command& command, const Available& at
 }
 
 CommandOutcome Director::compare(const Command& command, const Available& at) RT_SAFE {
-  comparison_.reset();
-  if (command.composition.layout == Layout::kSingle) return CommandOutcome::kApplied;
-  if (command.camera >= at.cameras) return CommandOutcome::kNoSuchView;
+  if (command.composition.layout == Layout::kSingle) {
+    comparison_.reset();
+    return CommandOutcome::kApplied;
+  }
+  std::optional<std::uint32_t> camera;
+  if (command.camera != Command::kSameView) {
+    if (command.camera >= at.cameras) return CommandOutcome::kNoSuchView;
+    camera = command.camera;
+  }
   comparison_ =
       Comparison{.composition = command.composition,
-                 .camera = command.camera,
+                 .camera = camera,
                  .delay = std::clamp(command.delay, rt::Nanoseconds::zero(), kLongestDelay)};
   return CommandOutcome::kApplied;
 }

@@ -70,11 +70,14 @@ struct Shot {
   Rate rate = Rate::kFull;          ///< of the playback
   std::uint32_t camera_wanted = 0;  ///< from 0
   std::uint32_t camera_shown = 0;
-  std::uint64_t trigger = 0;  ///< 0: nothing is stored that could be shown
-  std::uint64_t hold = 0;     ///< the moment whose frames must stay, of all cameras; 0: none
-  rt::Nanoseconds delay{};    ///< behind the newest stored moment
-  Composition composition;    ///< kSingle whenever there is no second frame
-  ShownFrame second;          ///< drawn after the first, where the composition says
+  std::uint64_t trigger = 0;         ///< 0: nothing is stored that could be shown
+  std::uint64_t hold = 0;            ///< the moment whose frames must stay, of all cameras; 0: none
+  rt::Nanoseconds delay{};           ///< behind the newest stored moment
+  Composition composition;           ///< kSingle whenever there is no second frame
+  ShownFrame second;                 ///< drawn after the first, where the composition says
+  bool second_missing = false;       ///< a second frame is wanted and not stored
+  rt::Nanoseconds second_earlier{};  ///< how long before the first
+  std::uint64_t hold_second = 0;     ///< as `hold`, of the second shot; 0: none, or the same moment
 
   friend bool operator==(const Shot&, const Shot&) = default;
 };

@@ -49,6 +49,13 @@ Phrase reasonOf(const Shot& shot) {
   return {};
 }
 
+Phrase comparisonOf(const Shot& shot) {
+  if (shot.second_missing) return phrase<Word::kShownWithNone>();
+  const std::uint64_t view = std::uint64_t{shot.second.camera} + 1;
+  if (shot.second_earlier == rt::Nanoseconds::zero()) return phrase<Word::kShownWith>(view);
+  return phrase<Word::kShownWithEarlier>(view, secondsOf(shot.second_earlier));
+}
+
 /// Why the picture is not what was asked for, and what is shown in its place.
 std::string badgeOf(const Shot& shot) {
   const std::string reason = textOf(reasonOf(shot));
@@ -69,6 +76,7 @@ StatusText statusText(const Shot& shot, std::uint32_t cameras) {
   };
   const std::uint64_t view = std::uint64_t{shot.camera_wanted} + 1;
   state(textOf(phrase<Word::kShownView>(view, cameras)));
+  if (shot.second_missing || shot.second.trigger != 0) state(textOf(comparisonOf(shot)));
   if (shot.at_history_end) state(textOf(phrase<Word::kShownMemoryEnd>()));
   if (shot.trigger == 0) state(textOf(phrase<Word::kShownNothingYet>()));
   if (shot.substitute != Substitute::kNone) state(badgeOf(shot));

@@ -76,6 +76,16 @@ TEST(StatusLine, IsNoBadgeWhileAllIsAsAskedFor) {
   EXPECT_FALSE(statusText(shot, 20).warning);
 }
 
+TEST(StatusLine, SaysWhatThePictureIsComparedWith) {
+  Shot shot{.trigger = 90, .second = {.camera = 4, .trigger = 90}};
+  EXPECT_EQ(line(shot), "LIVE   view 1/20   with view 5");
+  shot.second_earlier = milliseconds(4000);
+  EXPECT_EQ(line(shot), "LIVE   view 1/20   with view 5, 4.00 s earlier");
+  shot.second = {};
+  shot.second_missing = true;
+  EXPECT_EQ(line(shot), "LIVE   view 1/20   the picture to compare with is not stored");
+}
+
 TEST(StatusLine, SaysThatTheMemoryEndsHere) {
   const Shot shot{
       .mode = Mode::kFrozen, .at_history_end = true, .trigger = 9, .delay = milliseconds(7400)};

@@ -184,6 +184,34 @@ TEST_F(DirectorOnAnArcOfFive, AComparisonAddsAnotherViewOfTheSameMoment) {
   shot = press(kStepBack);
   EXPECT_EQ(shot.composition.layout, appliance::Layout::kSingle);
   EXPECT_EQ(shot.second.trigger, 0u) << "no other moment stands in for it";
+  EXPECT_TRUE(shot.second_missing);
+}
+
+TEST_F(DirectorOnAnArcOfFive, AnEarlierMomentOfTheSameViewFollowsItAroundTheArcAndIsKept) {
+  const Command compare{.kind = kCompare,
+                        .camera = Command::kSameView,
+                        .delay = seconds(1),
+                        .composition = {.layout = appliance::Layout::kSideBySide}};
+  (void)tick({compare});
+  Shot shot = press(kViewRight);
+  EXPECT_EQ(shot.second, (appliance::ShownFrame{3, 960}));
+  EXPECT_EQ(shot.hold_second, 0u) << "time runs";
+  shot = press(kFreeze);
+  EXPECT_EQ(shot.hold, 1000u);
+  EXPECT_EQ(shot.hold_second, 960u);
+  shot = press(kViewLeft);
+  EXPECT_EQ(shot.second, (appliance::ShownFrame{2, 960}));
+  EXPECT_EQ(press(kHome).hold_second, 0u);
+}
+
+TEST_F(DirectorOnAnArcOfFive, AComparisonThatIsRefusedLeavesTheOneBefore) {
+  Command compare{
+      .kind = kCompare, .camera = 4, .composition = {.layout = appliance::Layout::kWipe}};
+  (void)tick({compare});
+  compare.camera = 5;
+  const Shot shot = tick({compare});
+  EXPECT_THAT(director.outcomes(), testing::ElementsAre(CommandOutcome::kNoSuchView));
+  EXPECT_EQ(shot.second, (appliance::ShownFrame{4, 1000}));
 }
 
 TEST_F(DirectorOnAnArcOfFive, AComparisonMayBeTheSameViewSomeTimeEarlier) {
