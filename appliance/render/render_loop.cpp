@@ -5,6 +5,7 @@
 #include <span>
 
 #include "appliance/geometry/warp_planner.h"
+#include "appliance/render/composer.h"
 #include "rt/periodic_loop.h"
 
 namespace appliance {
@@ -28,9 +29,11 @@ RenderLoop::RenderLoop(const RenderParts& parts, const RenderParameters& paramet
     : parts_(parts),
       parameters_(parameters),
       target_(parts.target),
-      hold_(parts.frames),
+      hold_second_(parts.frames),
+      hold_(static_cast<StoredFrames&>(hold_second_)),  // in front of it, no copy of it
       director_(parameters.director),
       views_(parameters.zoom),
+      second_views_(parameters.zoom),
       sighted_(hold_, views_),
       allowance_(kShareOfPictures, parameters.trigger_period) {}
 
@@ -65,28 +68,23 @@ void RenderLoop::turn() noexcept {
   wanted.shot = director_.tick(wanted.picture, parameters_.trigger_period, sighted_,
                                std::span(commands_).first(command_count_));
   command_count_ = 0;
+  hold_second_.keep(wanted.shot.hold_second);
   hold_.keep(wanted.shot.hold);
   overlay_ = &parts_.overlay.overlay.latest();
   wanted.overlay = overlay_->generation;
   sayWhatIsShown(wanted.shot);
-  std::optional<PinnedFrame> frame;
-  if (wanted.shot.trigger != 0) {
-    frame = hold_.tryPin(wanted.shot.camera_shown, wanted.shot.trigger);
-  }
-  // Overtaken since the decision: the next turn decides again.
-  const bool ready = frame || wanted.shot.trigger == 0;
-  if (frame) wanted.trigger_edge = frame->frame.trigger_edge;
+  Frames frames;
+  const bool ready = pin(wanted.shot, frames);
   wanted.target_point_begin = rt::now();
-  wanted.exposure_middle = exposureMiddle(wanted.trigger_edge);
-  const Eigen::Vector3d& rig_m = rig->target_m;
-  wanted.target = target_.at(wanted.exposure_middle, {rig_m.x(), rig_m.y(), rig_m.z()});
+  wanted.first = momentOf(frames[0], *rig);
+  if (frames[1]) wanted.second = momentOf(frames[1], *rig);
   wanted.target_point_end = rt::now();
   parts_.board.shown_camera.store(wanted.shot.camera_shown, std::memory_order_relaxed);
 
   followScreen();
   const bool visible = counters_.screen.state == hal::ScreenState::kShowing;
   if (visible && ready && !onScreen(wanted, wake) && mayDraw(wanted, wake) &&
-      show(wanted, rig, frame, wake)) {
+      show(wanted, rig, frames, wake)) {
     on_screen_ = wanted;
     shown_at_ = wake;
     stale_ = false;
@@ -95,9 +93,9 @@ void RenderLoop::turn() noexcept {
   recordFlips();
   talkToGenlock();
   counters_.shot = wanted.shot;
-  counters_.target = wanted.target;
-  counters_.exposure_middle = wanted.exposure_middle;
-  parts_.shown.exposure_middle.store(wanted.exposure_middle, std::memory_order_relaxed);
+  counters_.target = wanted.first.target;
+  counters_.exposure_middle = wanted.first.exposure_middle;
+  parts_.shown.exposure_middle.store(wanted.first.exposure_middle, std::memory_order_relaxed);
   status_.publish(counters_);
   answerCommands();
   parts_.shown.mode.store(wanted.shot.mode, std::memory_order_relaxed);
@@ -158,11 +156,30 @@ bool RenderLoop::onScreen(const Wanted& wanted, rt::Timestamp now) const noexcep
          wanted.shot.trigger == on_screen_.shot.trigger &&
          wanted.shot.camera_shown == on_screen_.shot.camera_shown &&
          (wanted.overlay == on_screen_.overlay || overlay_waits) &&
-         !looksDifferent(on_screen_.target, wanted.target) && wanted.rig == on_screen_.rig;
+         wanted.shot.second == on_screen_.shot.second &&
+         wanted.shot.composition == on_screen_.shot.composition &&
+         !looksDifferent(on_screen_.first.target, wanted.first.target) &&
+         !looksDifferent(on_screen_.second.target, wanted.second.target) &&
+         wanted.rig == on_screen_.rig;
 }
 
-rt::Timestamp RenderLoop::exposureMiddle(rt::Timestamp edge) const noexcept {
-  return edge == rt::Timestamp{} ? edge : edge + parameters_.edge_to_exposure_middle;
+/// False if a frame was overtaken since the decision: the next turn decides again.
+bool RenderLoop::pin(const Shot& shot, Frames& frames) noexcept {
+  auto& [first, second] = frames;
+  if (shot.trigger != 0) first = hold_.tryPin(shot.camera_shown, shot.trigger);
+  if (shot.second.trigger != 0) second = hold_.tryPin(shot.second.camera, shot.second.trigger);
+  return (first || shot.trigger == 0) && (second || shot.second.trigger == 0);
+}
+
+RenderLoop::Moment RenderLoop::momentOf(const std::optional<PinnedFrame>& frame,
+                                        const Rig& rig) noexcept {
+  Moment moment;
+  if (frame) moment.trigger_edge = frame->frame.trigger_edge;
+  if (moment.trigger_edge != rt::Timestamp{})
+    moment.exposure_middle = moment.trigger_edge + parameters_.edge_to_exposure_middle;
+  moment.target =
+      target_.at(moment.exposure_middle, {rig.target_m.x(), rig.target_m.y(), rig.target_m.z()});
+  return moment;
 }
 
 /// While triggers are locked to the screen, an older picture never takes the vblank of the next
@@ -174,7 +191,7 @@ bool RenderLoop::mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept {
   const Shot& shot = wanted.shot;
   const bool is_new = shot.trigger != on_screen_.shot.trigger;
   if (!locked_ || stale_ || shot.mode != Mode::kLive || (is_new && held_back_) ||
-      locked_->redrawFits(now, wanted.trigger_edge)) {
+      locked_->redrawFits(now, wanted.first.trigger_edge)) {
     held_back_ = false;
     return true;
   }
@@ -193,15 +210,38 @@ void RenderLoop::evenOut(hal::WarpPlan& plan, std::uint32_t camera) noexcept {
   counters_.flicker = flicker_.report();
 }
 
-bool RenderLoop::show(const Wanted& wanted, const RigPin& rig,
-                      const std::optional<PinnedFrame>& frame, rt::Timestamp wake) noexcept {
+/// Both shots' layers in their places, each by its own target.
+void RenderLoop::compose(const Wanted& wanted, const RigPin& rig, const Frames& frames,
+                         hal::Scene& scene) noexcept {
   const Shot& shot = wanted.shot;
+  const std::array shown = {ShownFrame{shot.camera_shown, shot.trigger}, shot.second};
+  const hal::DisplayMode mode = parts_.display.mode();
+  const auto [places, count] = arrange(shot.composition);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!frames[i]) continue;
+    ViewSet& views = i == 0 ? views_ : second_views_;
+    const Target& target = (i == 0 ? wanted.first : wanted.second).target;
+    views.update(rig, mode.width_px, mode.height_px, target.point.vector());
+    const std::uint32_t camera = shown[i].camera;
+    auto plan = views.plan(rig, camera, sourceOf(*frames[i], rig->cameras[camera]));
+    if (!plan) continue;
+    if (parameters_.flicker_compensation) evenOut(*plan, camera);
+    scene.layers[scene.count++] = placed(*plan, hal::contentOf(camera, shown[i].trigger), places[i],
+                                         mode.width_px, mode.height_px);
+  }
+}
+
+bool RenderLoop::show(const Wanted& wanted, const RigPin& rig, const Frames& frames,
+                      rt::Timestamp wake) noexcept {
+  const Shot& shot = wanted.shot;
+  const std::optional<PinnedFrame>& frame = frames[0];
   PictureRecord record{.picture_id = picture_id_ + 1,
                        .mode = shot.mode,
                        .substitute = shot.substitute != Substitute::kNone,
                        .camera_wanted = shot.camera_wanted,
                        .camera_shown = shot.camera_shown,
                        .trigger = shot.trigger,
+                       .second = shot.second,
                        .wake = wake,
                        .button_event = first_command_};
 
@@ -210,19 +250,9 @@ bool RenderLoop::show(const Wanted& wanted, const RigPin& rig,
     record.target_point_begin = wanted.target_point_begin;
     record.target_point_end = wanted.target_point_end;
     record.homographies_begin = rt::now();
-    const hal::DisplayMode mode = parts_.display.mode();
-    views_.update(rig, mode.width_px, mode.height_px, wanted.target.point.vector());
+    compose(wanted, rig, frames, scene);
     noteViews();
     record.homographies_end = rt::now();
-    const auto plan =
-        views_.plan(rig, shot.camera_shown, sourceOf(*frame, rig->cameras[shot.camera_shown]));
-    if (plan) {
-      scene.layers[scene.count++] = {.plan = *plan,
-                                     .content = hal::contentOf(shot.camera_shown, shot.trigger)};
-    }
-    if (plan && parameters_.flicker_compensation) {
-      evenOut(scene.layers[0].plan, shot.camera_shown);
-    }
   }
 
   const auto drawn = parts_.display.render(scene);
@@ -231,7 +261,7 @@ bool RenderLoop::show(const Wanted& wanted, const RigPin& rig,
   const bool new_live = shot.mode == Mode::kLive && shot.trigger != on_screen_.shot.trigger;
   if (drawn && frame && new_live) {
     noteReady(frame->frame);
-    if (locked_) rt::sleepUntil(locked_->earliestCommit(wanted.trigger_edge));
+    if (locked_) rt::sleepUntil(locked_->earliestCommit(wanted.first.trigger_edge));
   } else if (drawn && director_.moving()) {
     rt::sleepUntil(wanted.picture.earliestCommit());
   }

@@ -74,9 +74,9 @@ struct RenderParameters {
 ///          a vblank early waits.
 class RenderLoop {
  public:
-  /// Two for what is shown (a picture may show two moments of one camera), those of the held moment
-  /// and of the next one while it changes, and one to spare.
-  static constexpr std::uint32_t kPinsPerCamera = 2 + MomentHold::kPinsPerCamera + 1;
+  /// Two for what is shown (a picture may show two moments of one camera), those of both held
+  /// moments, and one to spare.
+  static constexpr std::uint32_t kPinsPerCamera = 2 + 2 * MomentHold::kPinsPerCamera + 1;
 
   RenderLoop(const RenderParts& parts, const RenderParameters& parameters);
 
@@ -92,14 +92,21 @@ class RenderLoop {
   [[nodiscard]] RenderStatus status() { return status_.latest(); }
 
  private:
+  /// One of the shots: its frame's time, and what stands in the middle of it.
+  struct Moment {
+    rt::Timestamp trigger_edge;
+    rt::Timestamp exposure_middle;
+    Target target;
+  };
+  /// The frames of the first and the second shot.
+  using Frames = std::array<std::optional<PinnedFrame>, 2>;
+
   struct Wanted {
     Presentation picture;
     Shot shot;
-    rt::Timestamp trigger_edge;  // of the shown frame
-    std::uint64_t overlay = 0;   // its generation
-    rt::Timestamp exposure_middle;
-    Target target;
-    std::uint64_t rig = 0;  // its revision
+    Moment first, second;
+    std::uint64_t overlay = 0;  // its generation
+    std::uint64_t rig = 0;      // its revision
     rt::Timestamp target_point_begin;
     rt::Timestamp target_point_end;
   };
@@ -110,10 +117,13 @@ class RenderLoop {
   void answerCommands() noexcept;
   void followScreen() noexcept;
   void sayWhatIsShown(const Shot& shot) noexcept;
-  [[nodiscard]] rt::Timestamp exposureMiddle(rt::Timestamp edge) const noexcept;
+  [[nodiscard]] bool pin(const Shot& shot, Frames& frames) noexcept;
+  [[nodiscard]] Moment momentOf(const std::optional<PinnedFrame>& frame, const Rig& rig) noexcept;
   [[nodiscard]] bool onScreen(const Wanted& wanted, rt::Timestamp now) const noexcept;
-  [[nodiscard]] bool show(const Wanted& wanted, const RigPin& rig,
-                          const std::optional<PinnedFrame>& frame, rt::Timestamp wake) noexcept;
+  [[nodiscard]] bool show(const Wanted& wanted, const RigPin& rig, const Frames& frames,
+                          rt::Timestamp wake) noexcept;
+  void compose(const Wanted& wanted, const RigPin& rig, const Frames& frames,
+               hal::Scene& scene) noexcept;
   [[nodiscard]] bool mayDraw(const Wanted& wanted, rt::Timestamp now) noexcept;
   void noteViews() noexcept;
   void noteReady(const StoredFrame& frame) noexcept;
@@ -124,9 +134,11 @@ class RenderLoop {
   const RenderParts parts_;
   const RenderParameters parameters_;
   TargetReader target_;
-  MomentHold hold_;
+  MomentHold hold_second_;
+  MomentHold hold_;  // before hold_second_: finds what both hold
   Director director_;
   ViewSet views_;
+  ViewSet second_views_;  // of the second shot's target
   SightedViews sighted_;
   std::uint64_t on_arc_ = 0;  // the revision whose arc the director has
 

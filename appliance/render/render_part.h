@@ -7,7 +7,7 @@
 namespace appliance {
 
 /// Frames of each camera that the part pins at most.
-inline constexpr std::uint32_t kRenderPins = 5;
+inline constexpr std::uint32_t kRenderPins = 7;
 
 /// Shows pictures: the director's decisions, drawn and committed by the `render` thread.
 ///

@@ -37,6 +37,10 @@ std::string pictureText(const Trace& trace, const PictureRecord& picture, rt::Ti
                      std::string(nameOf(picture.mode)) + ", camera " +
                      std::to_string(picture.camera_shown + 1);
   if (picture.substitute) text += " instead of " + std::to_string(picture.camera_wanted + 1);
+  if (picture.second.trigger != 0) {
+    text += ", with trigger " + std::to_string(picture.second.trigger) + " of camera " +
+            std::to_string(picture.second.camera + 1);
+  }
   text += "\n";
   if (picture.button_event != rt::Timestamp{})
     text += instant("button_event", picture.button_event, zero);

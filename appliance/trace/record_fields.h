@@ -50,6 +50,8 @@ void visitFields(R& record, Visitor&& visit) {
   visit("camera_wanted", record.camera_wanted);
   visit("camera_shown", record.camera_shown);
   visit("trigger", record.trigger);
+  visit("second_camera", record.second.camera);
+  visit("second_trigger", record.second.trigger);
   visit("substitute", record.substitute);
   visit("imported", record.imported);
   visit("wake_ns", record.wake);

@@ -56,6 +56,7 @@ struct PictureRecord {
   std::uint32_t camera_wanted = 0;
   std::uint32_t camera_shown = 0;
   std::uint64_t trigger = 0;  ///< 0: an empty picture
+  ShownFrame second;          ///< of a comparison
   rt::Timestamp wake;         ///< the render thread began this picture
   rt::Timestamp target_point_begin;
   rt::Timestamp target_point_end;

@@ -106,7 +106,9 @@ struct JsonReader {
   std::string& error;
 
   /// Fields that older traces of the same format do not have.
-  static bool isNew(std::string_view name) { return name == "version"; }
+  static bool isNew(std::string_view name) {
+    return name == "version" || name == "second_camera" || name == "second_trigger";
+  }
 
   template <class T>
   void operator()(const char* name, T& value) {

@@ -28,6 +28,7 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kCameras = 3;
 constexpr std::uint32_t kSets = 8;
+constexpr rt::Nanoseconds kPeriod = 5ms;
 constexpr std::uint32_t kWidth = 160;
 constexpr std::uint32_t kHeight = 128;
 constexpr std::size_t kPictureBytes = std::size_t{320} * 180 * 4;
@@ -66,6 +67,7 @@ class PictureReader final : public PictureObserver {
   struct Picture {
     std::uint32_t camera;
     std::uint64_t trigger;
+    std::uint64_t second_trigger;  // 0: none
     Mode mode;
     Pixels pixels;
   };
@@ -75,6 +77,7 @@ class PictureReader final : public PictureObserver {
   void onPicture(const ShownPicture& shown) noexcept override {
     Picture picture{.camera = shown.record.camera_shown,
                     .trigger = shown.record.trigger,
+                    .second_trigger = shown.record.second.trigger,
                     .mode = shown.record.mode,
                     .pixels = Pixels(kPictureBytes)};
     if (!source_.readPicture(picture.pixels)) return;
@@ -141,7 +144,7 @@ class FrozenBox : public testing::Test {
                                                      .overlay = *overlay_,
                                                      .trace = nullptr,
                                                      .observer = reader_.get()},
-                                         RenderParameters{.trigger_period = 5ms});
+                                         RenderParameters{.trigger_period = kPeriod});
     thread_ = std::jthread([this](const std::stop_token& stop) { loop_->run(stop); });
   }
   void TearDown() override {
@@ -166,6 +169,38 @@ class FrozenBox : public testing::Test {
   }
   void press(const Command& command) { ASSERT_TRUE(coach_.give({command, rt::now()})); }
 
+  /// Freezes the sixth moment, which is shown, and looks at it while capture goes ten times through
+  /// the history.
+  void expectEveryPixelKept() {
+    press({.kind = Command::Kind::kFreezeToggle});
+    std::map<std::uint32_t, Pixels> views;
+    for (std::uint32_t camera = 0; camera < kCameras; ++camera) {
+      press({.kind = Command::Kind::kSetView, .camera = camera});
+      const auto seen = reader_->until([camera](const auto& picture) {
+        return picture.camera == camera && picture.mode == Mode::kFrozen;
+      });
+      ASSERT_EQ(seen.back().trigger, 6U);
+      views[camera] = seen.back().pixels;
+    }
+    ASSERT_NE(views[0], views[1]);
+
+    std::size_t compared = 0;
+    for (std::uint32_t round = 0; round < 10; ++round) {
+      for (std::uint32_t i = 0; i < kSets; ++i) capture();
+      const std::uint32_t camera = round % kCameras;
+      press({.kind = Command::Kind::kSetView, .camera = camera});
+      const auto seen =
+          reader_->until([camera](const auto& picture) { return picture.camera == camera; });
+      for (const auto& picture : seen) {
+        ASSERT_EQ(picture.trigger, 6U);
+        ASSERT_EQ(picture.mode, Mode::kFrozen);
+        ASSERT_TRUE(picture.pixels == views[picture.camera]) << "camera " << picture.camera;
+        ++compared;
+      }
+    }
+    EXPECT_GE(compared, 10U);
+  }
+
   RigShelf rigs_{arc()};
   CaptureBoard board_{kCameras};
   CommandInbox commands_{board_.wake_render};
@@ -187,39 +222,26 @@ class FrozenBox : public testing::Test {
 TEST_F(FrozenBox, KeepsEveryPixelOfEveryViewForTenTimesTheHistory) {
   for (int i = 0; i < 6; ++i) capture();
   (void)reader_->until([](const auto& picture) { return picture.trigger == 6; });
-  press({.kind = Command::Kind::kFreezeToggle});
-  std::map<std::uint32_t, Pixels> views;
-  for (std::uint32_t camera = 0; camera < kCameras; ++camera) {
-    press({.kind = Command::Kind::kSetView, .camera = camera});
-    const auto seen = reader_->until([camera](const auto& picture) {
-      return picture.camera == camera && picture.mode == Mode::kFrozen;
-    });
-    ASSERT_EQ(seen.back().trigger, 6U);
-    views[camera] = seen.back().pixels;
-  }
-  ASSERT_NE(views[0], views[1]);
-
-  std::size_t compared = 0;
-  for (std::uint32_t round = 0; round < 10; ++round) {
-    for (std::uint32_t i = 0; i < kSets; ++i) capture();
-    const std::uint32_t camera = round % kCameras;
-    press({.kind = Command::Kind::kSetView, .camera = camera});
-    const auto seen =
-        reader_->until([camera](const auto& picture) { return picture.camera == camera; });
-    for (const auto& picture : seen) {
-      ASSERT_EQ(picture.trigger, 6U);
-      ASSERT_EQ(picture.mode, Mode::kFrozen);
-      ASSERT_TRUE(picture.pixels == views[picture.camera]) << "camera " << picture.camera;
-      ++compared;
-    }
-  }
-  EXPECT_GE(compared, 10U);
-
+  expectEveryPixelKept();
   press({.kind = Command::Kind::kGoLive});
   capture();
   const auto live =
       reader_->until([this](const auto& picture) { return picture.trigger == trigger_; });
   EXPECT_EQ(live.back().mode, Mode::kLive);
+}
+
+TEST_F(FrozenBox, KeepsBothMomentsOfAComparison) {
+  for (int i = 0; i < 6; ++i) capture();
+  const auto alone =
+      reader_->until([](const auto& picture) { return picture.trigger == 6; }).back();
+  press({.kind = Command::Kind::kCompare,
+         .camera = Command::kSameView,
+         .delay = 2 * kPeriod,
+         .composition = {.layout = Layout::kSideBySide}});
+  const auto both =
+      reader_->until([](const auto& picture) { return picture.second_trigger == 4; }).back();
+  EXPECT_NE(both.pixels, alone.pixels);
+  expectEveryPixelKept();
 }
 
 }  // namespace

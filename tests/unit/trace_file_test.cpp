@@ -68,6 +68,7 @@ constexpr PictureRecord kPicture{.picture_id = 9,
                                  .camera_wanted = 3,
                                  .camera_shown = 4,
                                  .trigger = 77,
+                                 .second = {.camera = 5, .trigger = 70},
                                  .wake = fromNs(1),
                                  .target_point_begin = fromNs(2),
                                  .target_point_end = fromNs(3),
@@ -161,7 +162,8 @@ TEST(TraceFile, EveryInstantOfARecordHasItsOwnName) {
   EXPECT_EQ(line["upload_end_ns"], 7);
   EXPECT_EQ(line["button_event_ns"], 10);
   EXPECT_EQ(line["imported"], true);
-  EXPECT_EQ(line.size(), 18u);
+  EXPECT_EQ(line["second_trigger"], 70);
+  EXPECT_EQ(line.size(), 20u);
 }
 
 TEST(TraceFile, ATraceThatWasCutOffIsReadableUpToTheCut) {
