@@ -98,6 +98,12 @@ ControlClient::Answer ControlClient::setSpeed(const std::string& rate) {
 ControlClient::Answer ControlClient::replay(std::uint32_t delay_ms, const std::string& rate) {
   return withoutReply(call(kControlInterface, "Replay", "us", delay_ms, rate.c_str()));
 }
+ControlClient::Answer ControlClient::compare(const std::string& layout, std::uint32_t view,
+                                             std::uint32_t earlier_ms, double share) {
+  return withoutReply(
+      call(kControlInterface, "Compare", "suud", layout.c_str(), view, earlier_ms, share));
+}
+
 ControlClient::Answer ControlClient::setTarget(const std::array<double, 3>& target_m) {
   return withoutReply(
       call(kControlInterface, "SetTarget", "ddd", target_m[0], target_m[1], target_m[2]));

@@ -26,6 +26,9 @@ class ControlClient {
   [[nodiscard]] Answer setView(std::uint32_t view);  ///< from 1
   [[nodiscard]] Answer setSpeed(const std::string& rate);
   [[nodiscard]] Answer replay(std::uint32_t delay_ms, const std::string& rate);
+  /// @p view: from 1; 0: the first shot's.
+  [[nodiscard]] Answer compare(const std::string& layout, std::uint32_t view,
+                               std::uint32_t earlier_ms, double share);
   [[nodiscard]] Answer setTarget(const std::array<double, 3>& target_m);
   [[nodiscard]] Answer releaseTarget();
   [[nodiscard]] Answer freeze();

@@ -77,6 +77,30 @@ Requested requestReplay(std::uint32_t delay_ms, std::string_view rate, const Sta
   return Command{.kind = Kind::kReplay, .delay = replay->delay, .rate = speed->rate};
 }
 
+Requested requestCompare(std::string_view layout, std::uint32_t view, std::uint32_t earlier_ms,
+                         double share, const Status& now) {
+  const auto known = layoutNamed(layout);
+  if (!known)
+    return std::unexpected("unknown layout \"" + rt::printable(layout) +
+                           "\": the layouts are single, side-by-side, ghost and wipe");
+  Command command{.kind = Kind::kCompare, .camera = Command::kSameView};
+  if (*known == Layout::kSingle) return command;
+  if (!(share >= 0 && share <= 1)) return std::unexpected("the share is not a number from 0 to 1");
+  if (view == 0 && earlier_ms == 0)
+    return std::unexpected(
+        "the same view of the same moment: name another view, or how much earlier");
+  if (view != 0) {
+    const auto second = requestView(view, now);
+    if (!second) return second;
+    command.camera = second->camera;
+  }
+  const auto earlier = requestDelay(earlier_ms, now);
+  if (!earlier) return earlier;
+  command.delay = earlier->delay;
+  command.composition = {.layout = *known, .share = static_cast<float>(share)};
+  return command;
+}
+
 std::expected<std::array<double, 3>, std::string> requestTarget(double x_m, double y_m,
                                                                 double z_m) {
   const std::array<double, 3> target_m{x_m, y_m, z_m};

@@ -25,6 +25,10 @@ using Requested = std::expected<Command, std::string>;
 /// The last @p delay_ms once more at @p rate, which is not "0".
 [[nodiscard]] Requested requestReplay(std::uint32_t delay_ms, std::string_view rate,
                                       const Status& now);
+/// A second shot in the same picture. @p layout: as in kLayouts; "single" ends the comparison, and
+/// nothing else counts then. @p view: of the second shot, from 1; 0: the first's.
+[[nodiscard]] Requested requestCompare(std::string_view layout, std::uint32_t view,
+                                       std::uint32_t earlier_ms, double share, const Status& now);
 [[nodiscard]] std::expected<std::array<double, 3>, std::string> requestTarget(double x_m,
                                                                               double y_m,
                                                                               double z_m);

@@ -105,6 +105,18 @@ int replay(Server& server, sd_bus_message* message, sd_bus_error* error) {
   return answer(server, message, requestReplay(delay_ms, rate, server.status), error);
 }
 
+int compare(Server& server, sd_bus_message* message, sd_bus_error* error) {
+  const char* layout = nullptr;
+  std::uint32_t view = 0;
+  std::uint32_t earlier_ms = 0;
+  double share = 0;
+  if (const int r = sd_bus_message_read(message, "suud", &layout, &view, &earlier_ms, &share);
+      r < 0)
+    return r;
+  return answer(server, message, requestCompare(layout, view, earlier_ms, share, server.status),
+                error);
+}
+
 int setTarget(Server& server, sd_bus_message* message, sd_bus_error* error) {
   double x_m = 0;
   double y_m = 0;
@@ -217,6 +229,9 @@ const auto kControlTable = std::to_array<sd_bus_vtable>({
                             kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("Replay", SD_BUS_ARGS("u", delay_ms, "s", rate), SD_BUS_NO_RESULT,
                             kOn<replay>, kOpenToAll),
+    SD_BUS_METHOD_WITH_ARGS("Compare",
+                            SD_BUS_ARGS("s", layout, "u", view, "u", earlier_ms, "d", share),
+                            SD_BUS_NO_RESULT, kOn<compare>, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("SetTarget", SD_BUS_ARGS("d", x_m, "d", y_m, "d", z_m),
                             SD_BUS_NO_RESULT, kOn<setTarget>, kOpenToAll),
     SD_BUS_METHOD_WITH_ARGS("ReleaseTarget", SD_BUS_NO_ARGS, SD_BUS_NO_RESULT, kOn<releaseTarget>,

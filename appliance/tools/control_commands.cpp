@@ -119,6 +119,32 @@ void addPlaybackCommands(CLI::App& kagami, const ControlPlace& place) {
   });
 }
 
+void addCompareCommand(CLI::App& kagami, const ControlPlace& place) {
+  struct Options {
+    std::string layout;
+    std::uint32_t view = 0;
+    double earlier_s = 0;
+    double share = 0.5;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* compare = kagami.add_subcommand(
+      "compare", "Show a second view or an earlier moment in the same picture");
+  compare->add_option("LAYOUT", options->layout, "side-by-side, ghost or wipe; single ends it")
+      ->required();
+  compare->add_option("--view", options->view, "the second view, from 1; usually the first's own");
+  compare->add_option("--earlier", options->earlier_s, "seconds before the first")
+      ->check(CLI::Range(0.0, kLongestDelay_s));
+  compare
+      ->add_option("--share", options->share,
+                   "opacity of a ghost, or the part of the width that a wipe leaves to the first")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  compare->callback([&place, options] {
+    expectDone(connect(place).compare(options->layout, options->view,
+                                      inMilliseconds(options->earlier_s), options->share));
+  });
+}
+
 void addTargetCommand(CLI::App& kagami, const ControlPlace& place) {
   CLI::App* target = kagami.add_subcommand("target", "Set the point that stays in the centre");
   const auto target_m = std::make_shared<std::vector<double>>();
@@ -186,6 +212,7 @@ void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   view->add_option("VIEW", *number, "from 1, along the arc")->required();
   view->callback([&place, number] { expectDone(connect(place).setView(*number)); });
 
+  addCompareCommand(kagami, place);
   addTargetCommand(kagami, place);
 
   kagami.add_subcommand("freeze", "Stop at the shown moment")->callback([&place] {

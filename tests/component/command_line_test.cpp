@@ -53,8 +53,12 @@ TEST_F(CommandLine, LeadsTheBoxThroughItsModes) {
   EXPECT_TRUE(becomes([](const json& status) { return status["target_origin"] == "the rig's"; }));
   EXPECT_NE(kagami({"target"}).exit_status, 0);
   EXPECT_EQ(kagami({"mode", "live"}).exit_status, 0);
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"speed", "1/2"}, {"replay", "0.5", "1/4"}, {"mode", "live"}})
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"speed", "1/2"},
+                                             {"replay", "0.5", "1/4"},
+                                             {"compare", "side-by-side", "--view", "2"},
+                                             {"compare", "single"},
+                                             {"mode", "live"}})
     EXPECT_EQ(kagami(words).exit_status, 0) << words.front();
   EXPECT_TRUE(becomes([](const json& status) { return status["mode"] == "live"; }));
 }

@@ -62,6 +62,7 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
   EXPECT_TRUE(kagami.sweep().has_value());
   EXPECT_TRUE(kagami.setSpeed("1/4").has_value());
   EXPECT_TRUE(kagami.replay(2000, "1/8").has_value());
+  EXPECT_TRUE(kagami.compare("ghost", 3, 1500, 0.25).has_value());
   EXPECT_THAT(
       box_.commands(),
       ElementsAre(
@@ -71,7 +72,11 @@ TEST_F(ControlInterface, CarriesCommandsToTheSink) {
           Command{Command::Kind::kThaw}, Command{Command::Kind::kStartSweep},
           Command{.kind = Command::Kind::kSetRate, .rate = Rate::kQuarter},
           Command{
-              .kind = Command::Kind::kReplay, .delay = milliseconds(2000), .rate = Rate::kEighth}));
+              .kind = Command::Kind::kReplay, .delay = milliseconds(2000), .rate = Rate::kEighth},
+          Command{.kind = Command::Kind::kCompare,
+                  .camera = 2,
+                  .delay = milliseconds(1500),
+                  .composition = {.layout = appliance::Layout::kGhost, .share = 0.25F}}));
   EXPECT_TRUE(kagami.setTarget({1, 2, 0.5}).has_value());
   EXPECT_EQ(box_.status().target_m, (std::array<double, 3>{1, 2, 0.5}));
   EXPECT_TRUE(kagami.releaseTarget().has_value());

@@ -16,7 +16,9 @@ void check(const Requested& requested, const appliance::Status& now) {
   using enum appliance::Command::Kind;
   if (requested->kind == kSetView)
     fuzz::require(requested->camera < now.cameras.size(), "a view that is asked for exists");
-  if (requested->kind == kSetDelay || requested->kind == kReplay)
+  if (requested->kind == kCompare && requested->camera != appliance::Command::kSameView)
+    fuzz::require(requested->camera < now.cameras.size(), "a view to compare with exists");
+  if (requested->kind == kSetDelay || requested->kind == kReplay || requested->kind == kCompare)
     fuzz::require(requested->delay <= std::chrono::milliseconds(now.history_ms),
                   "a delay lies within the history");
 }
@@ -44,6 +46,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto name = fuzz::text(mode.data(), mode.size());
   check(appliance::requestMode(name), now);
   check(appliance::requestSpeed(name), now);
+  check(appliance::requestCompare(name, static_cast<std::uint32_t>(size), now.history_ms / 2, 0.5,
+                                  now),
+        now);
   check(appliance::requestReplay(now.history_ms / 2, name, now), now);
   return 0;
 }

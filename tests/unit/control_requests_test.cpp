@@ -1,6 +1,7 @@
 #include "appliance/control/control_requests.h"
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -46,6 +47,25 @@ TEST(ControlRequests, SpeedsHaveNames) {
   EXPECT_EQ(*appliance::requestSpeed("1/4"),
             (Command{.kind = Command::Kind::kSetRate, .rate = appliance::Rate::kQuarter}));
   EXPECT_THAT(appliance::requestSpeed("0.25").error(), HasSubstr("1, 1/2, 1/4, 1/8 and 0"));
+}
+
+TEST(ControlRequests, AComparisonNeedsAKnownLayoutAndSomethingElseToShow) {
+  Status now = running(Mode::kLive);
+  now.history_ms = 5000;
+  using appliance::requestCompare;
+  EXPECT_THAT(requestCompare("beside", 3, 0, 0.5, now).error(), HasSubstr("side-by-side"));
+  EXPECT_THAT(requestCompare("ghost", 0, 0, 0.5, now).error(), HasSubstr("name another view"));
+  EXPECT_THAT(requestCompare("ghost", 21, 0, 0.5, now).error(), HasSubstr("no view 21"));
+  EXPECT_THAT(requestCompare("wipe", 0, 6000, 0.5, now).error(), HasSubstr("longer than"));
+  for (const double share : {-0.1, 1.1, std::nan("")})
+    EXPECT_THAT(requestCompare("wipe", 3, 0, share, now).error(), HasSubstr("from 0 to 1"));
+  EXPECT_EQ(*requestCompare("wipe", 3, 1000, 0.25, now),
+            (Command{.kind = Command::Kind::kCompare,
+                     .camera = 2,
+                     .delay = std::chrono::milliseconds(1000),
+                     .composition = {.layout = appliance::Layout::kWipe, .share = 0.25F}}));
+  EXPECT_EQ(requestCompare("ghost", 0, 1000, 0.5, now)->camera, Command::kSameView);
+  EXPECT_EQ(requestCompare("single", 99, 9000, 7, now)->composition, appliance::Composition{});
 }
 
 TEST(ControlRequests, AReplayNeedsASpeedAndStoredTime) {
