@@ -89,7 +89,7 @@ std::expected<Screen, std::string> makeScreen(const Config& config, const Rig& r
     return std::unexpected("display.backend = \"" + config.display.backend +
                            "\" is neither \"kms\" nor \"offscreen\"");
   }
-  if (const auto mode = ui::kms::parseModeWish(config.display.mode); !mode) {
+  if (const auto mode = ui::kms::parseModeSpec(config.display.mode); !mode) {
     return std::unexpected("display.mode = " + mode.error());
   }
   auto display = ui::KmsDisplay::create({.renderer = rendererConfig(config.display, rig),
@@ -147,7 +147,7 @@ std::expected<void, std::string> run(const Site& site, EventLoop& loop) {
   auto running =
       Box::start(site, {.display = display, .observer = recorder.get(), .on_hang = endAbruptly});
   if (!running) return std::unexpected(running.error());
-  for (const std::string& line : lightLines(lightWish(config, site.rig))) logInfo(line);
+  for (const std::string& line : lightLines(lightParameters(config, site.rig))) logInfo(line);
   const auto service =
       BoxService::start(loop, {.bus = config.control.bus, .name = config.control.name}, **running,
                         **running, (*running)->jobs(), (*running)->busObjects());

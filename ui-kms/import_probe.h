@@ -11,7 +11,7 @@ namespace ui {
 
 /// Whether frames of this size, imported, are drawn as they stand in memory, also after they have
 /// been written anew: one is made, imported, drawn twice and compared pixel by pixel. What EGL
-/// lists is not enough: drivers have wishes about pitch and offset that they state nowhere.
+/// lists is not enough: drivers have requirements for pitch and offset that they document nowhere.
 ///
 /// Threads  The one that has the context current.
 /// Errors   One line: what fails, and what to do where somebody can.

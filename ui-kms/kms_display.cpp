@@ -41,10 +41,10 @@ std::expected<std::unique_ptr<KmsDisplay>, std::string> KmsDisplay::create(
     return std::unexpected("display.queue_depth = " + std::to_string(config.queue_depth) +
                            ": give 1 or 2");
   }
-  const auto wish = kms::parseModeWish(config.mode);
-  if (!wish) return std::unexpected("display.mode = " + wish.error());
+  const auto spec = kms::parseModeSpec(config.mode);
+  if (!spec) return std::unexpected("display.mode = " + spec.error());
   auto screen =
-      kms::Screen::open({.device = config.device, .mode = *wish, .trigger_hz = config.trigger_hz});
+      kms::Screen::open({.device = config.device, .mode = *spec, .trigger_hz = config.trigger_hz});
   if (!screen) return std::unexpected(screen.error());
   std::unique_ptr<KmsDisplay> display(new KmsDisplay(config, std::move(*screen)));
   auto made = display->makeRenderer();

@@ -30,19 +30,19 @@ std::string ratesInWords(const std::vector<double>& rates) {
 
 }  // namespace
 
-LightAdvice adviseOnLight(const LightWish& wish) {
+LightAdvice adviseOnLight(const LightParameters& parameters) {
   LightAdvice advice;
-  advice.lamp_hz = 2 * wish.mains_hz;
-  const double x = std::numbers::pi * advice.lamp_hz * wish.exposure_us * 1e-6;
+  advice.lamp_hz = 2 * parameters.mains_hz;
+  const double x = std::numbers::pi * advice.lamp_hz * parameters.exposure_us * 1e-6;
   advice.kept = std::abs(std::sin(x) / x);
-  const double per_picture = advice.lamp_hz / wish.rate_hz;
-  advice.beat_hz = std::abs(per_picture - std::round(per_picture)) * wish.rate_hz;
+  const double per_picture = advice.lamp_hz / parameters.rate_hz;
+  advice.beat_hz = std::abs(per_picture - std::round(per_picture)) * parameters.rate_hz;
   advice.wander_hz = 2 * kMainsWander_hz;
-  advice.blur_mm = blur_mm(wish.exposure_us);
-  if (wish.scale_px_m > 0) advice.blur_px = advice.blur_mm * 1e-3 * wish.scale_px_m;
+  advice.blur_mm = blur_mm(parameters.exposure_us);
+  if (parameters.scale_px_m > 0) advice.blur_px = advice.blur_mm * 1e-3 * parameters.scale_px_m;
   advice.even_exposure_us = 1e6 / advice.lamp_hz;
   advice.even_blur_mm = blur_mm(advice.even_exposure_us);
-  advice.even_fits = advice.even_blur_mm <= kMostBlur_mm && wish.rate_hz < advice.lamp_hz;
+  advice.even_fits = advice.even_blur_mm <= kMostBlur_mm && parameters.rate_hz < advice.lamp_hz;
   // Whole lamp periods between two pictures.
   const double fewer = std::floor(per_picture + 1e-9);
   if (fewer >= 1) advice.steady_rates.push_back(advice.lamp_hz / fewer);
@@ -50,10 +50,10 @@ LightAdvice adviseOnLight(const LightWish& wish) {
   return advice;
 }
 
-std::vector<std::string> lightLines(const LightWish& wish) {
-  const LightAdvice advice = adviseOnLight(wish);
+std::vector<std::string> lightLines(const LightParameters& parameters) {
+  const LightAdvice advice = adviseOnLight(parameters);
   std::string blur = line("exposure %.4g ms: motion blur at %.0f m/s is %.0f mm",
-                          wish.exposure_us * 1e-3, kFastestLimb_m_s, advice.blur_mm);
+                          parameters.exposure_us * 1e-3, kFastestLimb_m_s, advice.blur_mm);
   if (advice.blur_px) blur += line(" (%.1f px)", *advice.blur_px);
   std::vector<std::string> lines{std::move(blur)};
   if (advice.kept < kNothingKept) {

@@ -9,7 +9,7 @@ namespace appliance {
 /// Lamps on the mains flicker at twice its frequency, by a tenth (old fluorescent tubes with good
 /// ballasts) to all (cheap LEDs) of their light. What a camera sees of it follows from how long
 /// it looks and how often.
-struct LightWish {
+struct LightParameters {
   double mains_hz = 50;
   double rate_hz = 40;  ///< triggers
   double exposure_us = 1000;
@@ -27,22 +27,23 @@ struct LightAdvice {
   double beat_hz = 0;
   /// The beat that remains although it is 0 by the numbers: the mains wanders by 0.2 Hz.
   double wander_hz = 0;
-  double blur_mm = 0;                ///< at 20 m/s, a thrower's hand
-  std::optional<double> blur_px;     ///< where the scale is known
-  double even_exposure_us = 0;       ///< the shortest that keeps nothing: one lamp period
-  double even_blur_mm = 0;           ///< and its price
-  bool even_fits = false;            ///< it blurs no more than kMostBlur_mm and fits the period
-  std::vector<double> steady_rates;  ///< in Hz, around the wish, with a beat of 0; the faster first
+  double blur_mm = 0;             ///< at 20 m/s, a thrower's hand
+  std::optional<double> blur_px;  ///< where the scale is known
+  double even_exposure_us = 0;    ///< the shortest that keeps nothing: one lamp period
+  double even_blur_mm = 0;        ///< and its price
+  bool even_fits = false;         ///< it blurs no more than kMostBlur_mm and fits the period
+  /// In Hz, near rate_hz, with a beat of 0; the faster first.
+  std::vector<double> steady_rates;
 };
 
 /// More smears a hand into something that no coach can judge.
 inline constexpr double kMostBlur_mm = 50;
 inline constexpr double kFastestLimb_m_s = 20;
 
-/// Pure. Everything in @p wish but the scale is above 0.
-[[nodiscard]] LightAdvice adviseOnLight(const LightWish& wish);
+/// Pure. Everything in @p parameters but the scale is above 0.
+[[nodiscard]] LightAdvice adviseOnLight(const LightParameters& parameters);
 
 /// The advice for a person, a sentence a line.
-[[nodiscard]] std::vector<std::string> lightLines(const LightWish& wish);
+[[nodiscard]] std::vector<std::string> lightLines(const LightParameters& parameters);
 
 }  // namespace appliance

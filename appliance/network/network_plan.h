@@ -11,7 +11,7 @@ namespace appliance {
 
 /// The cameras' way into this machine: every camera on a link of its own into a switch, the switch
 /// on one or more equal uplinks, the cameras spread over them evenly.
-struct NetworkWish {
+struct NetworkParameters {
   std::uint32_t cameras = 20;
   std::uint32_t width_px = 1280;
   std::uint32_t height_px = 1024;  ///< one byte a pixel
@@ -20,7 +20,7 @@ struct NetworkWish {
   std::uint32_t uplinks = 2;
   double uplink_gbps = 10;
   double camera_link_gbps = 1;
-  bool operator==(const NetworkWish&) const = default;
+  bool operator==(const NetworkParameters&) const = default;
 };
 
 /// No link is planned fuller than this: resends, control and clocks need the rest.
@@ -55,10 +55,10 @@ struct NetworkPlan {
   double highest_rate_hz = 0;         ///< that this network carries
 };
 
-/// Something near a refused wish that is possible.
+/// A change of refused parameters that makes them possible.
 struct NetworkAlternative {
   std::string words;  ///< "lower the rate to 44.9 Hz"
-  NetworkWish wish;
+  NetworkParameters parameters;
 };
 
 struct NetworkRefusal {
@@ -69,14 +69,15 @@ struct NetworkRefusal {
   [[nodiscard]] std::string line() const;
 };
 
-/// Pure. @p wish has at least one camera, pixel and uplink, packets of 576 bytes or more, and
+/// Pure. @p parameters has at least one camera, pixel and uplink, packets of 576 bytes or more, and
 /// speeds and rates above 0.
-[[nodiscard]] std::expected<NetworkPlan, NetworkRefusal> planNetwork(const NetworkWish& wish);
+[[nodiscard]] std::expected<NetworkPlan, NetworkRefusal> planNetwork(
+    const NetworkParameters& parameters);
 
 /// The rate at which the first link is full to kLinkShare.
-[[nodiscard]] double highestRate_hz(const NetworkWish& wish);
+[[nodiscard]] double highestRate_hz(const NetworkParameters& parameters);
 
 /// "1 x 10 Gb/s"
-[[nodiscard]] std::string uplinkWords(const NetworkWish& wish);
+[[nodiscard]] std::string uplinkWords(const NetworkParameters& parameters);
 
 }  // namespace appliance

@@ -7,7 +7,7 @@
 namespace appliance {
 
 /// How a site looks at its light.
-[[nodiscard]] inline LightWish lightWish(const Config& config, const Rig& rig) {
+[[nodiscard]] inline LightParameters lightParameters(const Config& config, const Rig& rig) {
   return {.mains_hz = config.light.mains_hz,
           .rate_hz = config.trigger.rate_hz,
           .exposure_us = config.cameras.exposure_us,

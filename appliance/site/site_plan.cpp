@@ -7,7 +7,7 @@
 
 namespace appliance {
 
-NetworkWish networkWish(const Config& config, const Rig& rig) {
+NetworkParameters networkParameters(const Config& config, const Rig& rig) {
   const auto pixels = [](const RigCamera& camera) {
     return std::uint64_t{camera.width_px} * camera.height_px;
   };
@@ -23,20 +23,20 @@ NetworkWish networkWish(const Config& config, const Rig& rig) {
 }
 
 std::expected<FittedSite, std::string> fitToNetwork(Config config, const Rig& rig) {
-  NetworkWish wish = networkWish(config, rig);
-  auto plan = planNetwork(wish);
+  NetworkParameters parameters = networkParameters(config, rig);
+  auto plan = planNetwork(parameters);
   std::string lowered;
   if (!plan) {
     const std::string refusal = plan.error().line();
-    wish.rate_hz = std::floor(highestRate_hz(wish) * 10) / 10;
-    if (wish.rate_hz < kLowestRate_hz) return std::unexpected("network: " + refusal);
+    parameters.rate_hz = std::floor(highestRate_hz(parameters) * 10) / 10;
+    if (parameters.rate_hz < kLowestRate_hz) return std::unexpected("network: " + refusal);
     std::array<char, 96> text{};
     (void)std::snprintf(text.data(), text.size(),
-                        "trigger: runs at %.1f Hz instead of %.4g: ", wish.rate_hz,
+                        "trigger: runs at %.1f Hz instead of %.4g: ", parameters.rate_hz,
                         config.trigger.rate_hz);
     lowered = text.data() + refusal;
-    config.trigger.rate_hz = wish.rate_hz;
-    plan = planNetwork(wish);
+    config.trigger.rate_hz = parameters.rate_hz;
+    plan = planNetwork(parameters);
   }
   if (config.cameras.packet_delay_ns < 0) {
     config.cameras.packet_delay_ns =

@@ -10,7 +10,7 @@
 namespace appliance {
 
 /// What a site asks of its network: every camera as large as the rig's largest.
-[[nodiscard]] NetworkWish networkWish(const Config& config, const Rig& rig);
+[[nodiscard]] NetworkParameters networkParameters(const Config& config, const Rig& rig);
 
 /// The site as its network can carry it.
 struct FittedSite {

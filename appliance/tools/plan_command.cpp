@@ -37,8 +37,8 @@ ViewParameters screenOf(const std::string& text) {
 }
 
 struct Site {
-  NetworkWish network;
-  LightWish light;
+  NetworkParameters network;
+  LightParameters light;
   std::vector<std::string> picture;  ///< what the screen shows; empty without a rig
 };
 
@@ -54,8 +54,8 @@ Site configuredSite(const Options& options) {
     std::fprintf(stderr, "kagami: warning: %s\n", warning.c_str());
   const ViewParameters screen = screenOf(options.screen);
   site.picture = coverLines(*rig, screen.width_px, screen.height_px, config->display.zoom);
-  site.network = networkWish(*config, *rig);
-  site.light = lightWish(*config, *rig);
+  site.network = networkParameters(*config, *rig);
+  site.light = lightParameters(*config, *rig);
   return site;
 }
 
@@ -74,17 +74,17 @@ Site siteOf(const Options& options) {
   return site;
 }
 
-void printPlan(const NetworkWish& wish, const NetworkPlan& plan) {
+void printPlan(const NetworkParameters& network, const NetworkPlan& plan) {
   const auto us = [](rt::Nanoseconds t) { return static_cast<double>(t.count()) * 1e-3; };
   std::printf("%-14s %8.3g Gb/s %4.0f %% %10.1f us %8.1f ms %8.2f MB %8.2f MB %9.1f Hz\n",
-              uplinkWords(wish).c_str(), plan.uplink_gbps, 100 * plan.uplink_use,
+              uplinkWords(network).c_str(), plan.uplink_gbps, 100 * plan.uplink_use,
               us(plan.packet_delay), us(plan.transfer) * 1e-3,
               static_cast<double>(plan.buffer_bytes) * 1e-6,
               static_cast<double>(plan.undelayed_bytes) * 1e-6, plan.highest_rate_hz);
 }
 
-void printRefusal(const NetworkWish& wish, const NetworkRefusal& refusal) {
-  std::printf("%-14s impossible: %s\n", uplinkWords(wish).c_str(), refusal.reason.c_str());
+void printRefusal(const NetworkParameters& network, const NetworkRefusal& refusal) {
+  std::printf("%-14s impossible: %s\n", uplinkWords(network).c_str(), refusal.reason.c_str());
   const char* lead = "possible:";
   for (const NetworkAlternative& alternative : refusal.alternatives) {
     std::printf("%-14s   %-9s %s\n", "", lead, alternative.words.c_str());
@@ -92,19 +92,19 @@ void printRefusal(const NetworkWish& wish, const NetworkRefusal& refusal) {
   }
 }
 
-/// Whether @p wish is possible.
-bool print(const NetworkWish& wish) {
-  const auto plan = planNetwork(wish);
+/// Whether @p network is possible.
+bool print(const NetworkParameters& network) {
+  const auto plan = planNetwork(network);
   if (plan)
-    printPlan(wish, *plan);
+    printPlan(network, *plan);
   else
-    printRefusal(wish, plan.error());
+    printRefusal(network, plan.error());
   return plan.has_value();
 }
 
 /// What to print: the named uplinks, else three usual ones, with the configured one if it is
 /// another.
-std::vector<Uplinks> uplinksToPrint(const Options& options, const NetworkWish& wish) {
+std::vector<Uplinks> uplinksToPrint(const Options& options, const NetworkParameters& network) {
   std::vector<Uplinks> all;
   for (const std::string& text : options.uplinks) {
     const auto uplinks = parseUplinks(text);
@@ -113,7 +113,7 @@ std::vector<Uplinks> uplinksToPrint(const Options& options, const NetworkWish& w
   }
   if (!all.empty()) return all;
   all = {{1, 10}, {2, 10}, {1, 25}};
-  const Uplinks configured{wish.uplinks, wish.uplink_gbps};
+  const Uplinks configured{network.uplinks, network.uplink_gbps};
   if (!options.config.empty() && std::ranges::find(all, configured) == all.end())
     all.push_back(configured);
   return all;
@@ -121,20 +121,20 @@ std::vector<Uplinks> uplinksToPrint(const Options& options, const NetworkWish& w
 
 void plan(const Options& options) {
   Site site = siteOf(options);
-  NetworkWish& wish = site.network;
+  NetworkParameters& network = site.network;
   const bool judged = !options.config.empty() || !options.uplinks.empty();
-  const Uplinks configured{wish.uplinks, wish.uplink_gbps};
-  const std::vector<Uplinks> all = uplinksToPrint(options, wish);
+  const Uplinks configured{network.uplinks, network.uplink_gbps};
+  const std::vector<Uplinks> all = uplinksToPrint(options, network);
   std::printf("%u cameras of %ux%u at %.4g Hz, packets of %u bytes, %.4g Gb/s per camera\n\n",
-              wish.cameras, wish.width_px, wish.height_px, wish.rate_hz, wish.packet_size_bytes,
-              wish.camera_link_gbps);
+              network.cameras, network.width_px, network.height_px, network.rate_hz,
+              network.packet_size_bytes, network.camera_link_gbps);
   std::printf("%-14s %13s %6s %13s %11s %11s %11s %12s\n", "uplinks", "fullest", "use",
               "packet delay", "transfer", "buffer", "undelayed", "highest rate");
   bool possible = true;
   for (const Uplinks& uplinks : all) {
-    wish.uplinks = uplinks.count;
-    wish.uplink_gbps = uplinks.gbps;
-    const bool fits = print(wish);
+    network.uplinks = uplinks.count;
+    network.uplink_gbps = uplinks.gbps;
+    const bool fits = print(network);
     if (!options.uplinks.empty() || uplinks == configured) possible = possible && fits;
   }
   std::printf("\n");

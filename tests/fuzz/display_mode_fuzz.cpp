@@ -4,14 +4,14 @@
 #include "ui-kms/kms/mode_choice.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto wish = ui::kms::parseModeWish(fuzz::text(data, size));
-  if (!wish) {
-    fuzz::requireOneLine(wish.error());
+  const auto spec = ui::kms::parseModeSpec(fuzz::text(data, size));
+  if (!spec) {
+    fuzz::requireOneLine(spec.error());
     return 0;
   }
-  if (!*wish) return 0;
-  fuzz::require((*wish)->width_px > 0 && (*wish)->height_px > 0, "a mode has a size");
-  fuzz::require(std::isfinite((*wish)->refresh_hz) && (*wish)->refresh_hz >= 0,
+  if (!*spec) return 0;
+  fuzz::require((*spec)->width_px > 0 && (*spec)->height_px > 0, "a mode has a size");
+  fuzz::require(std::isfinite((*spec)->refresh_hz) && (*spec)->refresh_hz >= 0,
                 "and a rate or none");
   return 0;
 }

@@ -110,7 +110,7 @@ class ImportGolden : public testing::Test {
     ASSERT_NE(display_, nullptr);
     const std::string reason(display_->uploadReason());
     if (!reason.empty()) {
-      // A GPU may have wishes about pitch that this frame does not meet; the CPU has none.
+      // A GPU may require a pitch that this frame does not have; the CPU requires none.
       const bool none_offered = !buffer || reason.find(" lists no ") != std::string::npos;
       EXPECT_TRUE(none_offered || display_->renderer().find("llvmpipe") == std::string_view::npos)
           << reason;

@@ -27,19 +27,19 @@ std::vector<drmModeModeInfo> modesOfTheScreen() {
 TEST(Scanout, ShowsEveryPixelThatWasDrawnInEveryMode) {
   std::set<std::string> shown;
   for (const drmModeModeInfo& mode : modesOfTheScreen()) {
-    char wish[32];
-    std::snprintf(wish, sizeof wish, "%ux%u@%.2f", mode.hdisplay, mode.vdisplay,
+    char spec[32];
+    std::snprintf(spec, sizeof spec, "%ux%u@%.2f", mode.hdisplay, mode.vdisplay,
                   ui::kms::refreshHz(mode));
-    if (!shown.insert(wish).second) continue;
+    if (!shown.insert(spec).second) continue;
     ui::KmsConfig config = KmsViewer::quick(kCard);
-    config.mode = wish;
+    config.mode = spec;
     KmsViewer viewer(config);
     ASSERT_TRUE(viewer);
     ASSERT_EQ(viewer.display().mode().width_px, mode.hdisplay);
     ASSERT_EQ(viewer.display().mode().height_px, mode.vdisplay);
-    ASSERT_TRUE(viewer.show()) << wish;
+    ASSERT_TRUE(viewer.show()) << spec;
     ScanoutReader reader(::getpid(), kCard);
-    EXPECT_EQ(viewer.differs(reader), 0U) << wish;
+    EXPECT_EQ(viewer.differs(reader), 0U) << spec;
   }
   EXPECT_GT(shown.size(), 5U);
   std::printf("%zu modes shown and read back\n", shown.size());

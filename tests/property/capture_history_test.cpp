@@ -142,26 +142,26 @@ TEST(FrameHistory, NeverChangesAFrameUnderARandomReader) {
   EXPECT_EQ(torn.load(), 0U);
 }
 
-TEST(FitHistory, KeepsTheWishWhereMemoryAllowsIt) {
-  const HistoryLayout wish{.frame_bytes = {kFrameBytes, kFrameBytes}, .sets = 300};
-  const auto fitted = fitHistory(wish, wish.bytes(), 8);
+TEST(FitHistory, KeepsAllSetsIfMemoryAllowsIt) {
+  const HistoryLayout layout{.frame_bytes = {kFrameBytes, kFrameBytes}, .sets = 300};
+  const auto fitted = fitHistory(layout, layout.bytes(), 8);
   ASSERT_TRUE(fitted);
   EXPECT_EQ(fitted->sets, 300U);
 }
 
 TEST(FitHistory, GivesUpSetsButNotSlotsInFlight) {
-  const HistoryLayout wish{.frame_bytes = {kFrameBytes, kFrameBytes}, .sets = 300};
-  const auto fitted = fitHistory(wish, wish.bytes() / 2, 8);
+  const HistoryLayout layout{.frame_bytes = {kFrameBytes, kFrameBytes}, .sets = 300};
+  const auto fitted = fitHistory(layout, layout.bytes() / 2, 8);
   ASSERT_TRUE(fitted);
   EXPECT_LT(fitted->sets, 300U);
   EXPECT_GT(fitted->sets, 100U);
-  EXPECT_LE(fitted->bytes(), wish.bytes() / 2);
-  EXPECT_EQ(fitted->in_flight, wish.in_flight);
+  EXPECT_LE(fitted->bytes(), layout.bytes() / 2);
+  EXPECT_EQ(fitted->in_flight, layout.in_flight);
 }
 
 TEST(FitHistory, RefusesWhenNotEvenTheFewestSetsFit) {
-  const HistoryLayout wish{.frame_bytes = {kFrameBytes}, .sets = 300};
-  EXPECT_FALSE(fitHistory(wish, kFrameBytes * 10, 8));
+  const HistoryLayout layout{.frame_bytes = {kFrameBytes}, .sets = 300};
+  EXPECT_FALSE(fitHistory(layout, kFrameBytes * 10, 8));
 }
 
 }  // namespace

@@ -8,13 +8,13 @@
 namespace {
 
 using appliance::kLinkShare;
-using appliance::NetworkWish;
+using appliance::NetworkParameters;
 using appliance::planNetwork;
 using property_test::anyIn;
 
 constexpr double kRounding = 1e-9;
 
-NetworkWish anyWish() {
+NetworkParameters anyNetwork() {
   return {.cameras = anyIn(1U, 65U),
           .width_px = anyIn(16U, 5000U),
           .height_px = anyIn(16U, 5000U),
@@ -25,34 +25,37 @@ NetworkWish anyWish() {
           .camera_link_gbps = anyIn(1U, 200U) * 0.05};
 }
 
-/// A wish that is possible, at whatever rate it takes.
-NetworkWish anyPossibleWish() {
-  NetworkWish wish = anyWish();
-  wish.rate_hz = highestRate_hz(wish) * (anyIn(1, 1001) / 1000.0);  // exactly the highest, at most
-  return wish;
+/// A network that can carry the frames, at any rate.
+NetworkParameters anyPossibleNetwork() {
+  NetworkParameters parameters = anyNetwork();
+  parameters.rate_hz =
+      highestRate_hz(parameters) * (anyIn(1, 1001) / 1000.0);  // exactly the highest, at most
+  return parameters;
 }
 
 RC_GTEST_PROP(NetworkPlanProperty, FillsNoLinkBeyondItsShare, ()) {
-  const NetworkWish wish = anyPossibleWish();
-  const auto plan = planNetwork(wish);
+  const NetworkParameters parameters = anyPossibleNetwork();
+  const auto plan = planNetwork(parameters);
   RC_ASSERT(plan.has_value());
   RC_ASSERT(plan->uplink_use <= kLinkShare + kRounding);
   RC_ASSERT(plan->camera_link_use <= kLinkShare + kRounding);
   // Counted by all cameras together, too.
   const double bits =
-      appliance::frameOnWire(std::uint64_t{wish.width_px} * wish.height_px, wish.packet_size_bytes)
+      appliance::frameOnWire(std::uint64_t{parameters.width_px} * parameters.height_px,
+                             parameters.packet_size_bytes)
           .bits();
-  RC_ASSERT(wish.cameras * bits * wish.rate_hz <=
-            kLinkShare * wish.uplinks * wish.uplink_gbps * 1e9 * (1 + kRounding));
+  RC_ASSERT(parameters.cameras * bits * parameters.rate_hz <=
+            kLinkShare * parameters.uplinks * parameters.uplink_gbps * 1e9 * (1 + kRounding));
 }
 
 RC_GTEST_PROP(NetworkPlanProperty, SendsAFrameBeforeTheNextOneIsDue, ()) {
-  const NetworkWish wish = anyPossibleWish();
-  const auto plan = planNetwork(wish);
+  const NetworkParameters parameters = anyPossibleNetwork();
+  const auto plan = planNetwork(parameters);
   RC_ASSERT(plan.has_value());
-  const double period_ns = 1e9 / wish.rate_hz;
+  const double period_ns = 1e9 / parameters.rate_hz;
   const double packets =
-      appliance::frameOnWire(std::uint64_t{wish.width_px} * wish.height_px, wish.packet_size_bytes)
+      appliance::frameOnWire(std::uint64_t{parameters.width_px} * parameters.height_px,
+                             parameters.packet_size_bytes)
           .packets;
   RC_ASSERT(static_cast<double>(plan->transfer.count()) <= period_ns + packets);  // rounding
   RC_ASSERT(plan->packet_delay.count() >= 0);
@@ -60,23 +63,23 @@ RC_GTEST_PROP(NetworkPlanProperty, SendsAFrameBeforeTheNextOneIsDue, ()) {
 }
 
 RC_GTEST_PROP(NetworkPlanProperty, RefusesWithAlternativesThatAreAllAccepted, ()) {
-  NetworkWish wish = anyWish();
-  wish.rate_hz = highestRate_hz(wish) * (1 + anyIn(1, 5000) * 1e-3);
-  const auto plan = planNetwork(wish);
+  NetworkParameters parameters = anyNetwork();
+  parameters.rate_hz = highestRate_hz(parameters) * (1 + anyIn(1, 5000) * 1e-3);
+  const auto plan = planNetwork(parameters);
   RC_ASSERT(!plan.has_value());
   RC_ASSERT(!plan.error().reason.empty());
   for (const auto& alternative : plan.error().alternatives) {
-    RC_ASSERT(alternative.wish != wish);
-    const auto possible = planNetwork(alternative.wish);
+    RC_ASSERT(alternative.parameters != parameters);
+    const auto possible = planNetwork(alternative.parameters);
     RC_ASSERT(possible.has_value());
   }
   // A lower rate is always possible where one of a tenth of a hertz is.
-  if (highestRate_hz(wish) >= 0.1) RC_ASSERT(!plan.error().alternatives.empty());
+  if (highestRate_hz(parameters) >= 0.1) RC_ASSERT(!plan.error().alternatives.empty());
 }
 
 RC_GTEST_PROP(NetworkPlanProperty, TakesEveryLowerRateAndFillsLinksInStepWithIt, ()) {
-  NetworkWish fast = anyPossibleWish();
-  NetworkWish slow = fast;
+  NetworkParameters fast = anyPossibleNetwork();
+  NetworkParameters slow = fast;
   slow.rate_hz *= anyIn(1, 1000) * 1e-3;
   const auto plan_fast = planNetwork(fast);
   const auto plan_slow = planNetwork(slow);

@@ -10,31 +10,31 @@ namespace {
 
 using appliance::adviseOnLight;
 using appliance::lightLines;
-using appliance::LightWish;
+using appliance::LightParameters;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Brightness of picture @p n of a lamp that goes from dark to full and back, summed up.
-double brightness(const LightWish& wish, int n) {
+double brightness(const LightParameters& parameters, int n) {
   constexpr int kSteps = 2000;
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
-    const double t = n / wish.rate_hz + (i + 0.5) / kSteps * wish.exposure_us * 1e-6;
-    sum += 1 + std::cos(2 * std::numbers::pi * 2 * wish.mains_hz * t);
+    const double t = n / parameters.rate_hz + (i + 0.5) / kSteps * parameters.exposure_us * 1e-6;
+    sum += 1 + std::cos(2 * std::numbers::pi * 2 * parameters.mains_hz * t);
   }
   return sum / kSteps;
 }
 
 TEST(LightAdvice, KeepsTheFlickerThatSummedUpLightKeeps) {
   for (const double exposure_us : {100.0, 1000.0, 4000.0, 7000.0, 9900.0, 13000.0}) {
-    const LightWish wish{.mains_hz = 50, .rate_hz = 37.3, .exposure_us = exposure_us};
+    const LightParameters parameters{.mains_hz = 50, .rate_hz = 37.3, .exposure_us = exposure_us};
     double least = 2;
     double most = 0;
     for (int n = 0; n < 400; ++n) {
-      least = std::min(least, brightness(wish, n));
-      most = std::max(most, brightness(wish, n));
+      least = std::min(least, brightness(parameters, n));
+      most = std::max(most, brightness(parameters, n));
     }
-    EXPECT_NEAR(adviseOnLight(wish).kept, (most - least) / 2, 0.01) << exposure_us << " us";
+    EXPECT_NEAR(adviseOnLight(parameters).kept, (most - least) / 2, 0.01) << exposure_us << " us";
   }
 }
 
@@ -47,7 +47,7 @@ TEST(LightAdvice, FindsTheBeatOfTheRateWithTheLamps) {
   EXPECT_NEAR(adviseOnLight({.mains_hz = 50, .rate_hz = 240}).beat_hz, 100, 1e-9);
 }
 
-TEST(LightAdvice, NamesTheSteadyRatesAroundTheWish) {
+TEST(LightAdvice, NamesTheSteadyRatesAroundTheConfiguredRate) {
   EXPECT_THAT(adviseOnLight({.mains_hz = 50, .rate_hz = 40}).steady_rates,
               ElementsAre(50, 100.0 / 3));
   EXPECT_THAT(adviseOnLight({.mains_hz = 60, .rate_hz = 50}).steady_rates, ElementsAre(60, 40));

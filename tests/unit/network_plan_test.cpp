@@ -9,7 +9,7 @@ namespace {
 
 using appliance::frameOnWire;
 using appliance::highestRate_hz;
-using appliance::NetworkWish;
+using appliance::NetworkParameters;
 using appliance::planNetwork;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -71,10 +71,10 @@ TEST(NetworkPlan, NeedsNoDelayWhereEveryCameraCanSendAtFullSpeed) {
 }
 
 TEST(NetworkPlan, LetsAFrameLeaveBeforeTheNextOneIsDue) {
-  const NetworkWish wish{.rate_hz = 44.9, .uplinks = 1};
-  const auto plan = planNetwork(wish);
+  const NetworkParameters parameters{.rate_hz = 44.9, .uplinks = 1};
+  const auto plan = planNetwork(parameters);
   ASSERT_TRUE(plan) << plan.error().line();
-  EXPECT_LE(us(plan->transfer), 1e6 / wish.rate_hz);
+  EXPECT_LE(us(plan->transfer), 1e6 / parameters.rate_hz);
 }
 
 TEST(NetworkPlan, RefusesInPlainWordsAndNamesWhatIsPossible) {

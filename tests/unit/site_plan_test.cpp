@@ -60,9 +60,9 @@ TEST(SitePlan, RefusesANetworkThatCarriesNextToNothing) {
 TEST(SitePlan, PlansForTheLargestCameraOfAMixedRig) {
   Rig rig = twentyCameras();
   rig.cameras[7].height_px = 2048;
-  const auto wish = networkWish(Config{}, rig);
-  EXPECT_EQ(wish.cameras, 20U);
-  EXPECT_EQ(wish.height_px, 2048U);
+  const auto parameters = networkParameters(Config{}, rig);
+  EXPECT_EQ(parameters.cameras, 20U);
+  EXPECT_EQ(parameters.height_px, 2048U);
 }
 
 }  // namespace

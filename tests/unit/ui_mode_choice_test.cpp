@@ -9,7 +9,7 @@
 
 namespace {
 
-using ui::kms::ModeWish;
+using ui::kms::ModeSpec;
 using ui::kms::rankModes;
 using ui::kms::refreshHz;
 
@@ -38,9 +38,9 @@ const std::vector kTelevision = {k1080p60, k1080p5994, k1080p50, k1080p120,
                                  k1080i60, k720p60,    k2160p60};
 
 std::string best(const std::vector<drmModeModeInfo>& modes, double trigger_hz,
-                 const std::string& wish = "") {
+                 const std::string& spec = "") {
   return ui::kms::describe(
-      rankModes(modes, trigger_hz, ui::kms::parseModeWish(wish).value()).front());
+      rankModes(modes, trigger_hz, ui::kms::parseModeSpec(spec).value()).front());
 }
 
 TEST(ModeChoice, KnowsTheTrueRefreshRate) {
@@ -87,21 +87,21 @@ TEST(ModeChoice, ASitesOwnChoiceGoesBeforeAll) {
   EXPECT_EQ(best(kTelevision, 40, "1920x1080@60"), "1920x1080 at 60.00 Hz");
   EXPECT_EQ(best(kTelevision, 50, "1920x1080"), "1920x1080 at 50.00 Hz");
   EXPECT_EQ(best(kTelevision, 60, "800x600"), "1920x1080 at 60.00 Hz") << "not offered";
-  EXPECT_FALSE(fulfils(k1080p60, ModeWish{1920, 1080, 50}));
-  EXPECT_TRUE(fulfils(k1080p60, ModeWish{1920, 1080, 0}));
+  EXPECT_FALSE(fulfils(k1080p60, ModeSpec{1920, 1080, 50}));
+  EXPECT_TRUE(fulfils(k1080p60, ModeSpec{1920, 1080, 0}));
 }
 
 TEST(ModeChoice, ReadsASitesOwnChoice) {
-  using ui::kms::parseModeWish;
-  EXPECT_EQ(parseModeWish("").value(), std::nullopt);
-  EXPECT_EQ(parseModeWish("1920x1080").value(), (ModeWish{1920, 1080, 0}));
-  EXPECT_EQ(parseModeWish("1920x1080@59.94").value(), (ModeWish{1920, 1080, 59.94}));
+  using ui::kms::parseModeSpec;
+  EXPECT_EQ(parseModeSpec("").value(), std::nullopt);
+  EXPECT_EQ(parseModeSpec("1920x1080").value(), (ModeSpec{1920, 1080, 0}));
+  EXPECT_EQ(parseModeSpec("1920x1080@59.94").value(), (ModeSpec{1920, 1080, 59.94}));
   for (const char* bad :
        {"1920", "1920x", "x1080", "1920x1080@", "1920x1080@fast", "0x0", "1920x1080@60p",
         "1920x1080 @60", "-1x5", "1920x1080@-60", "1920x1080@nan", "99999999x2"}) {
-    const auto wish = parseModeWish(bad);
-    ASSERT_FALSE(wish) << bad;
-    EXPECT_THAT(wish.error(), testing::HasSubstr("write it as")) << bad;
+    const auto spec = parseModeSpec(bad);
+    ASSERT_FALSE(spec) << bad;
+    EXPECT_THAT(spec.error(), testing::HasSubstr("write it as")) << bad;
   }
 }
 

@@ -11,14 +11,14 @@ namespace ui::kms {
 namespace {
 
 constexpr double kTriggerGivesWay = 0.005;
-constexpr double kRateAsWished = 0.01;
+constexpr double kRateTolerance = 0.01;
 
 /// What rankModes() compares, best is least.
-auto rank(const drmModeModeInfo& mode, double trigger_hz, const std::optional<ModeWish>& wish) {
+auto rank(const drmModeModeInfo& mode, double trigger_hz, const std::optional<ModeSpec>& spec) {
   const double hz = refreshHz(mode);
-  const bool wished = wish && fulfils(mode, *wish);
-  const double off = wished && wish->refresh_hz > 0 ? std::abs(hz - wish->refresh_hz) : 0;
-  return std::tuple(!wished, off, (mode.flags & DRM_MODE_FLAG_INTERLACE) != 0,
+  const bool chosen = spec && fulfils(mode, *spec);
+  const double off = chosen && spec->refresh_hz > 0 ? std::abs(hz - spec->refresh_hz) : 0;
+  return std::tuple(!chosen, off, (mode.flags & DRM_MODE_FLAG_INTERLACE) != 0,
                     !isMultiple(hz, trigger_hz), (mode.type & DRM_MODE_TYPE_PREFERRED) == 0,
                     -(std::int64_t{mode.hdisplay} * mode.vdisplay), -hz);
 }
@@ -35,31 +35,31 @@ double refreshHz(const drmModeModeInfo& mode) {
   return hz;
 }
 
-std::expected<std::optional<ModeWish>, std::string> parseModeWish(std::string_view text) {
+std::expected<std::optional<ModeSpec>, std::string> parseModeSpec(std::string_view text) {
   if (text.empty()) return std::nullopt;
   const std::string copy(text);
-  ModeWish wish;
+  ModeSpec spec;
   int end = 0;
   const auto whole = [&] { return end > 0 && static_cast<std::size_t>(end) == copy.size(); };
   // sscanf would take signs, spaces and nan.
   const bool plain = copy.find_first_not_of("0123456789.x@") == std::string::npos;
   bool good =
-      plain && std::sscanf(copy.c_str(), "%5ux%5u%n", &wish.width_px, &wish.height_px, &end) == 2;
+      plain && std::sscanf(copy.c_str(), "%5ux%5u%n", &spec.width_px, &spec.height_px, &end) == 2;
   if (plain && !whole()) {
     end = 0;
-    good = std::sscanf(copy.c_str(), "%5ux%5u@%8lf%n", &wish.width_px, &wish.height_px,
-                       &wish.refresh_hz, &end) == 3 &&
-           whole() && wish.refresh_hz > 0;
+    good = std::sscanf(copy.c_str(), "%5ux%5u@%8lf%n", &spec.width_px, &spec.height_px,
+                       &spec.refresh_hz, &end) == 3 &&
+           whole() && spec.refresh_hz > 0;
   }
-  if (good && wish.width_px > 0 && wish.height_px > 0) return wish;
+  if (good && spec.width_px > 0 && spec.height_px > 0) return spec;
   return std::unexpected("\"" + rt::printable(text) +
                          "\" is no mode: write it as \"1920x1080@59.94\"");
 }
 
-bool fulfils(const drmModeModeInfo& mode, const ModeWish& wish) {
-  if (mode.hdisplay != wish.width_px || mode.vdisplay != wish.height_px) return false;
-  return wish.refresh_hz <= 0 ||
-         std::abs(refreshHz(mode) - wish.refresh_hz) <= kRateAsWished * wish.refresh_hz;
+bool fulfils(const drmModeModeInfo& mode, const ModeSpec& spec) {
+  if (mode.hdisplay != spec.width_px || mode.vdisplay != spec.height_px) return false;
+  return spec.refresh_hz <= 0 ||
+         std::abs(refreshHz(mode) - spec.refresh_hz) <= kRateTolerance * spec.refresh_hz;
 }
 
 bool isMultiple(double refresh_hz, double trigger_hz) {
@@ -70,13 +70,13 @@ bool isMultiple(double refresh_hz, double trigger_hz) {
 }
 
 std::vector<drmModeModeInfo> rankModes(std::span<const drmModeModeInfo> modes, double trigger_hz,
-                                       const std::optional<ModeWish>& wish) {
+                                       const std::optional<ModeSpec>& spec) {
   std::vector<drmModeModeInfo> ranked;
   std::ranges::copy_if(modes, std::back_inserter(ranked), [](const drmModeModeInfo& mode) {
     return mode.hdisplay > 0 && mode.vdisplay > 0 && refreshHz(mode) > 0;
   });
   std::ranges::stable_sort(ranked, [&](const drmModeModeInfo& a, const drmModeModeInfo& b) {
-    return rank(a, trigger_hz, wish) < rank(b, trigger_hz, wish);
+    return rank(a, trigger_hz, spec) < rank(b, trigger_hz, spec);
   });
   return ranked;
 }

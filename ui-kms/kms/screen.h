@@ -19,7 +19,7 @@ namespace ui::kms {
 
 struct ScreenConfig {
   std::string device;            ///< /dev/dri/cardN; empty: the first with a screen
-  std::optional<ModeWish> mode;  ///< none: the best for the trigger rate
+  std::optional<ModeSpec> mode;  ///< none: the best for the trigger rate
   double trigger_hz = 0;         ///< 0: none
 };
 
@@ -92,7 +92,7 @@ class Screen {
   ScreenMachine machine_;
   std::optional<Output> output_;
   std::optional<drmModeModeInfo> mode_;
-  std::string notice_;  // what is less than wished for, or what was wrong
+  std::string notice_;  // what is less than configured, or what was wrong
 };
 
 }  // namespace ui::kms
