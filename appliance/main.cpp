@@ -64,7 +64,8 @@ ui::RendererConfig rendererConfig(const DisplaySettings& config, const Rig& rig)
 
 template <class Display>
 Screen screenOf(std::unique_ptr<Display> display) {
-  if (!display->textWarning().empty()) logWarning(display->textWarning());
+  if (!display->textWarning().empty())
+    log(LogLevel::kWarning, phrase<Word::kDisplayNote>(display->textWarning()));
   ui::PictureSource* source = display.get();
   return {.display = std::move(display), .source = source};
 }
@@ -73,24 +74,25 @@ Screen screenOf(std::unique_ptr<Display> display) {
 std::expected<Screen, std::string> makeOffscreen(const DisplaySettings& config, const Rig& rig,
                                                  const std::string& missing) {
   hal::ScreenStatus status;
-  if (!missing.empty()) status.state = hal::ScreenState::kNoScreen;
-  std::snprintf(status.message.data(), status.message.size(), "%s", missing.c_str());
+  if (!missing.empty()) {
+    status.state = hal::ScreenState::kNoScreen;
+    status.trouble = hal::ScreenTrouble::kNoDisplay;
+    hal::putText(status.detail, missing);
+  }
   auto display = ui::OffscreenDisplay::create(
       {.renderer = rendererConfig(config, rig), .refresh_hz = config.refresh_hz, .screen = status});
   if (!display) return std::unexpected(display.error());
   return screenOf(std::move(*display));
 }
 
-/// The box waits for a screen that is not there yet. Without a card for one it still captures,
-/// keeps and answers: decision 0011.
+/// The box waits for a screen that is not connected yet. Without a graphics card it still captures,
+/// stores and answers: decision 0011.
 std::expected<Screen, std::string> makeScreen(const Config& config, const Rig& rig) {
   if (config.display.backend == "offscreen") return makeOffscreen(config.display, rig, "");
-  if (config.display.backend != "kms") {
-    return std::unexpected("display.backend = \"" + config.display.backend +
-                           "\" is neither \"kms\" nor \"offscreen\"");
-  }
+  if (config.display.backend != "kms")
+    return std::unexpected(withId(phrase<Word::kDisplayBackend>(config.display.backend)));
   if (const auto mode = ui::kms::parseModeSpec(config.display.mode); !mode) {
-    return std::unexpected("display.mode = " + mode.error());
+    return std::unexpected(withId(phrase<Word::kDisplayMode>(mode.error())));
   }
   auto display = ui::KmsDisplay::create({.renderer = rendererConfig(config.display, rig),
                                          .refresh_hz = config.display.refresh_hz,
@@ -99,7 +101,7 @@ std::expected<Screen, std::string> makeScreen(const Config& config, const Rig& r
                                          .trigger_hz = config.trigger.rate_hz,
                                          .queue_depth = config.display.queue_depth});
   if (display) {
-    logInfo("screen: " + (*display)->description());
+    log(LogLevel::kInfo, phrase<Word::kScreenFound>((*display)->description()));
     return screenOf(std::move(*display));
   }
   return makeOffscreen(config.display, rig, display.error());
@@ -119,7 +121,7 @@ std::expected<void, std::string> releaseLines(const Options& options) {
   return {};
 }
 
-/// Threads that did not stop still use what an orderly end would destroy.
+/// For threads that did not stop: they still use what an orderly end would destroy.
 void endAbruptly(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) logError(line);
   std::_Exit(EXIT_FAILURE);
@@ -139,21 +141,21 @@ std::expected<void, std::string> run(const Site& site, EventLoop& loop) {
     recorder = std::move(*made);
   }
   if (!scheduleDrawWorkers(config.realtime.draw)) {
-    const char* refused =
-        "the software renderer's threads run without real-time priority: pictures may come late";
-    if (config.realtime.require) return std::unexpected(refused);
-    logWarning(refused);
+    const Phrase plain = phrase<Word::kDrawPlain>();
+    if (config.realtime.require) return std::unexpected(withId(plain));
+    log(LogLevel::kWarning, plain);
   }
   auto running =
       Box::start(site, {.display = display, .observer = recorder.get(), .on_hang = endAbruptly});
   if (!running) return std::unexpected(running.error());
-  for (const std::string& line : lightLines(lightParameters(config, site.rig))) logInfo(line);
+  for (const Phrase& line : lightLines(lightParameters(config, site.rig)))
+    log(LogLevel::kInfo, line);
   const auto service =
       BoxService::start(loop, {.bus = config.control.bus, .name = config.control.name}, **running,
                         **running, (*running)->jobs(), (*running)->busObjects());
   if (!service) return std::unexpected(service.error());
-  logInfo("running: " + std::to_string(site.rig.cameras.size()) + " cameras, " +
-          std::string(display.renderer()) + ", frames by " + (*running)->status().source_path);
+  log(LogLevel::kInfo, phrase<Word::kRunning>(site.rig.cameras.size(), display.renderer(),
+                                              (*running)->status().source_path));
 
   const auto served = (*service)->run();
 
@@ -206,7 +208,7 @@ int main(int argc, char** argv) {
     return EXIT_FAILURE;
   }
   if (options.check_config) {
-    for (const std::string& line : site->degraded) logWarning(line);
+    for (const Phrase& remark : site->degraded) log(LogLevel::kWarning, remark);
     std::printf("%s: good; %s: %zu cameras\n", options.config_file.c_str(),
                 site->config.rig.file.c_str(), site->rig.cameras.size());
     return EXIT_SUCCESS;

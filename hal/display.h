@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "hal/display_timing.h"
 #include "hal/scene.h"
+#include "hal/screen_status.h"
 #include "hal/typesetter.h"
 #include "rt/clock.h"
 #include "rt/result.h"
@@ -33,27 +33,13 @@ struct PageFlip {
   std::uint64_t vblank;     ///< that vblank's number
 };
 
-enum class ScreenState : std::uint8_t {
-  kShowing,   ///< pictures come on screen
-  kNoScreen,  ///< nothing connected, or nothing that can be lit; looked for all the time
-  kReleased,  ///< given away on request
-};
-
-struct ScreenStatus {
-  ScreenState state = ScreenState::kShowing;
-  std::array<char, 128> message{};  ///< why nothing or less is shown, and what to do; may be empty
-  /// Another number than before: the screen does not show the last picture any more, and its mode
-  /// may be another. Draw anew.
-  std::uint64_t changes = 0;
-};
-
 /// A screen that shows one picture at a time.
 ///
 /// Threads  One caller: the render thread. The object is made (EGL context included) on a
 ///          SCHED_OTHER thread and handed over: the first call binds the context to its caller.
-/// RT       Nothing here is RT safe; GL and commits may block. The caller's budget is monitored.
-/// Errors   kBusy: the last commit has not flipped yet. kDeviceLost: no screen, or released; goes
-///          on when it is back. Both leave the object usable.
+/// RT       Nothing here is RT safe: GL and commits may block.
+/// Errors   kBusy: the last commit has not flipped yet. kDeviceLost: there is no screen, or it is
+///          released; pictures go on when it is back. Both leave the object usable.
 class Display {
  public:
   virtual ~Display() = default;
@@ -63,12 +49,12 @@ class Display {
   [[nodiscard]] virtual DisplayMode mode() const = 0;
   /// What draws, for the report: GL_RENDERER.
   [[nodiscard]] virtual std::string_view renderer() const = 0;
-  /// Why frames are uploaded even where they come as dma-bufs, in one line; empty where those are
-  /// read in place.
+  /// Why frames are uploaded even if they come as dma-bufs, in one line; empty if those are read in
+  /// place.
   [[nodiscard]] virtual std::string_view uploadReason() const = 0;
 
-  /// Makes the letters of overlays for this display, on a thread of its own; lives as long as the
-  /// display. None where there is no font: pictures carry no text.
+  /// Makes the letters of overlays for this display. Another thread than the render thread may call
+  /// it. It lives as long as the display. None if there is no font: pictures carry no text.
   [[nodiscard]] virtual Typesetter* typesetter() = 0;
 
   /// Draws into a free buffer, done when it returns.
@@ -83,8 +69,8 @@ class Display {
   /// None while vblanks are not known: no screen, or too few flips so far.
   [[nodiscard]] virtual std::optional<DisplayTiming> timing() const = 0;
 
-  /// When the display is to be called next, whether there is a picture or not, so that one that
-  /// was committed early, or was refused with kBusy, is not held up. None: whenever.
+  /// Call the display by then even without a new picture, so that a queued or refused one is
+  /// submitted in time. None: no deadline.
   [[nodiscard]] virtual std::optional<rt::Timestamp> nextCall() const = 0;
 
   [[nodiscard]] virtual ScreenStatus screen() const = 0;

@@ -1,7 +1,6 @@
 #include "ui-kms/kms_display.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include <gbm.h>
@@ -170,7 +169,7 @@ bool KmsDisplay::buffersFit() const {
          buffers_->heightPx() == mode_.height_px;
 }
 
-/// What had no room once is not asked for at each picture: memory comes back slowly, if at all.
+/// After a failure the next attempt waits: memory is freed slowly, if at all.
 rt::Result<void> KmsDisplay::fitBuffers(rt::Timestamp now) {
   if (buffersFit()) return {};
   queue_.dropAll();
@@ -179,7 +178,7 @@ rt::Result<void> KmsDisplay::fitBuffers(rt::Timestamp now) {
   auto fitted = renderer_->resize(mode_.width_px, mode_.height_px);
   if (fitted) fitted = makeBuffers();
   if (!fitted) {
-    no_buffers_ = fitted.error() + ": choose a smaller display.mode";
+    no_buffers_ = fitted.error();
     fit_pause_ = std::clamp(2 * fit_pause_, kFirstFitPause, kLongestFitPause);
     next_fit_ = now + fit_pause_;
     return std::unexpected(no_room);
@@ -281,8 +280,13 @@ hal::ScreenStatus KmsDisplay::screen() const {
     status.state = hal::ScreenState::kNoScreen;
   }
   status.changes = screen_->changes();
-  const std::string& message = no_buffers_.empty() ? screen_->message() : no_buffers_;
-  std::snprintf(status.message.data(), status.message.size(), "%s", message.c_str());
+  const kms::Trouble trouble = no_buffers_.empty()
+                                   ? screen_->trouble()
+                                   : kms::Trouble{hal::ScreenTrouble::kNoMemory, {}, no_buffers_};
+  status.trouble = trouble.what;
+  status.os_errno = trouble.os_errno;
+  hal::putText(status.subject, trouble.subject);
+  hal::putText(status.detail, trouble.detail);
   return status;
 }
 

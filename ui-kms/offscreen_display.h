@@ -20,7 +20,7 @@ struct OffscreenConfig {
   RendererConfig renderer;
   double refresh_hz = 60;
   std::uint32_t buffers = 3;
-  hal::ScreenStatus screen;  ///< what screen() says: where this stands for a screen that failed
+  hal::ScreenStatus screen;  ///< what screen() returns: why this stands in for a screen, if it does
 };
 
 /// A screen without a screen: the same drawing, buffers and vblanks, kept in memory.

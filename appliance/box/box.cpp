@@ -16,7 +16,7 @@ Box::Box(const Site& site, const BoxParts& parts)
       commands_(board_.wake_render),
       control_commands_(commands_.open("control")),
       parts_(parts.patience) {
-  for (const std::string& line : site.degraded) remarks_.add("site", line);
+  for (const Phrase& phrase : site.degraded) remarks_.add("site", phrase);
 }
 
 Box::~Box() {

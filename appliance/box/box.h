@@ -54,7 +54,7 @@ class Box final : public ControlSink, public StatusSource {
   [[nodiscard]] int answersFd() const override { return commands_.answers().fd(); }
   [[nodiscard]] bool setTarget(const std::array<double, 3>& target_m) override;
   void releaseTarget() override;
-  [[nodiscard]] std::expected<std::vector<std::string>, std::string> loadRig(
+  [[nodiscard]] std::expected<std::vector<std::string>, Phrase> loadRig(
       const std::string& text, const std::string& name) override;
   void setScreenReleased(bool released) override;
   [[nodiscard]] Status status() const override;

@@ -7,7 +7,6 @@
 #include "appliance/box/box.h"
 #include "appliance/geometry/rig_file.h"
 #include "appliance/metrics/metrics_text.h"
-#include "rt/printable.h"
 
 namespace appliance {
 
@@ -42,13 +41,12 @@ void Box::releaseTarget() {
   board_.wake_render.ring();
 }
 
-std::expected<std::vector<std::string>, std::string> Box::loadRig(const std::string& text,
-                                                                  const std::string& name) {
+std::expected<std::vector<std::string>, Phrase> Box::loadRig(const std::string& text,
+                                                             const std::string& name) {
   auto rig = parseRig(text, name, site_.config.cameras.pixel_format);
-  if (!rig) return std::unexpected(std::move(rig.error()));
+  if (!rig) return std::unexpected(phrase<Word::kRigRefused>(rig.error()));
   std::vector<std::string> warnings = rig->warnings;
-  if (const auto put = rigs_.put(std::move(*rig)); !put)
-    return std::unexpected(rt::printable(name + ": " + put.error()));
+  if (const auto put = rigs_.put(std::move(*rig)); !put) return std::unexpected(put.error());
   board_.wake_render.ring();
   return warnings;
 }

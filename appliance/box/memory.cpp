@@ -1,7 +1,6 @@
 #include "appliance/box/memory.h"
 
 #include <cstdint>
-#include <cstdio>
 #include <utility>
 
 #include "rt/memory.h"
@@ -12,13 +11,9 @@ namespace {
 constexpr std::uint32_t kFewestSets = 8;
 
 std::string historyTooLarge(const HistoryLayout& layout, std::uint64_t available) {
-  char line[256];
-  std::snprintf(line, sizeof line,
-                "memory: the history of %u sets takes %.1f GB, %.1f GB are available: lower "
-                "history.sets, or free memory",
-                layout.sets, static_cast<double>(layout.bytes()) * 1e-9,
-                static_cast<double>(available) * 1e-9);
-  return line;
+  return withId(phrase<Word::kHistoryTooLarge>(layout.sets,
+                                               static_cast<double>(layout.bytes()) * 1e-9,
+                                               static_cast<double>(available) * 1e-9));
 }
 
 }  // namespace
@@ -53,12 +48,10 @@ std::expected<void, std::string> lockMemory(const RealtimeSettings& realtime,
   if (!realtime.lock_memory) return {};
   const rt::MemoryLock lock = rt::lockMemory();
   if (lock.locked && history.memory().report().locked) return {};
-  const Phrase unlocked = phrase<Word::kHistoryUnlocked>();
-  if (realtime.require) return std::unexpected(lock.locked ? textOf(unlocked) : lock.message);
-  if (lock.locked)
-    remarks.add("memory", unlocked);
-  else
-    remarks.add("memory", lock.message);
+  const Phrase unlocked =
+      lock.locked ? phrase<Word::kHistoryUnlocked>() : phrase<Word::kMemoryUnlocked>(lock.message);
+  if (realtime.require) return std::unexpected(withId(unlocked));
+  remarks.add("memory", unlocked);
   return {};
 }
 

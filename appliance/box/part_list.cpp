@@ -1,7 +1,5 @@
 #include "appliance/box/part_list.h"
 
-#include <array>
-#include <cstdio>
 #include <future>
 #include <ranges>
 #include <thread>
@@ -30,12 +28,8 @@ std::vector<std::string> PartList::stop() {
   if (std::exchange(stopped_, true)) return hung;
   for (std::unique_ptr<Part>& part : std::views::reverse(parts_)) {
     if (stopInTime(*part)) continue;
-    std::array<char, 128> line{};
-    (void)std::snprintf(line.data(), line.size(),
-                        "part %.*s does not stop within %.1f s: the process ends without it",
-                        static_cast<int>(part->name().size()), part->name().data(),
-                        std::chrono::duration<double>(patience_).count());
-    hung.emplace_back(line.data());
+    hung.push_back(withId(
+        phrase<Word::kPartHangs>(part->name(), std::chrono::duration<double>(patience_).count())));
     (void)part.release();  // its thread still uses it
   }
   std::erase(parts_, nullptr);
@@ -66,7 +60,7 @@ void PartList::addBusObjects(std::vector<BusObject>& objects) const {
 std::expected<void, std::string> PartList::handle(const Request& request) {
   for (const auto& part : parts_)
     if (const Answer answer = part->handle(request)) return *answer;
-  return std::unexpected("no part of this box knows \"" + request.verb + "\"");
+  return std::unexpected(withId(phrase<Word::kNoSuchRequest>(request.verb)));
 }
 
 }  // namespace appliance

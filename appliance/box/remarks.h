@@ -13,9 +13,6 @@ namespace appliance {
 /// Threads  main.
 class Remarks {
  public:
-  void add(std::string key, std::string text) {
-    remarks_.push_back({.key = std::move(key), .text = std::move(text)});
-  }
   void add(std::string key, const Phrase& phrase) {
     remarks_.push_back(remarkOf(std::move(key), phrase));
   }

@@ -9,12 +9,11 @@ std::expected<void, std::string> Threads::startInto(
     std::function<void(const std::stop_token&)> body) {
   auto started = rt::Thread::start(threadConfig(name, how), std::move(body));
   if (!started) {
-    return std::unexpected("thread " + name + " does not start: " + started.error().where +
-                           ": check [realtime] in the configuration");
+    return std::unexpected(withId(phrase<Word::kThreadRefused>(name, started.error().where)));
   }
   if (!started->grant().complete()) {
     const Phrase plain = phrase<Word::kThreadPlain>(name);
-    if (require_) return std::unexpected(textOf(plain));
+    if (require_) return std::unexpected(withId(plain));
     remarks_.add("thread " + name, plain);
   }
   thread = std::move(*started);

@@ -94,7 +94,8 @@ std::vector<Remark> CameraArray::remarks() const {
   std::vector<Remark> remarks;
   for (std::size_t i = 0; i < supervisors_.size(); ++i) {
     const std::string key = "camera " + std::to_string(i + 1);
-    for (std::string& text : supervisors_[i]->remarks()) remarks.push_back({key, std::move(text)});
+    for (const Phrase& remark : supervisors_[i]->remarks())
+      remarks.push_back(remarkOf(key, remark));
     if (collectors_[i]->counts().no_slot == 0) continue;
     remarks.push_back(remarkOf(key, phrase<Word::kCameraNoSlot>(rig_.cameras[i].name)));
   }

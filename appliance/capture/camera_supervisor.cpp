@@ -29,8 +29,8 @@ std::expected<void, std::string> CameraSupervisor::start(std::size_t camera) {
   auto started = rt::Thread::start({.name = watchThreadName(camera)},
                                    [this](const std::stop_token& stop) { run(stop); });
   if (!started) {
-    return std::unexpected("thread " + watchThreadName(camera) + " does not start: " +
-                           started.error().where + ": the system has no more threads or memory");
+    return std::unexpected(
+        withId(phrase<Word::kWatchRefused>(watchThreadName(camera), started.error().where)));
   }
   thread_ = std::move(*started);
   return {};
@@ -54,18 +54,20 @@ CameraHealth CameraSupervisor::health() const {
   return health_;
 }
 
-std::vector<std::string> CameraSupervisor::remarks() const {
+std::vector<Phrase> CameraSupervisor::remarks() const {
   const std::scoped_lock lock(mutex_);
   return remarks_;
 }
 
-std::vector<std::string> CameraSupervisor::remarksNow() {
+std::vector<Phrase> CameraSupervisor::remarksNow() {
   if (!camera_) return {};
-  std::vector<std::string> remarks = camera_->remarks();
+  std::vector<Phrase> remarks;
+  for (const std::string& remark : camera_->remarks())
+    remarks.push_back(phrase<Word::kCameraNote>(remark));
   const hal::CameraStatistics counted = camera_->statistics();
   packets_.take(counted);
   if (large_packet_loss_.update(counted)) {
-    remarks.push_back(access_.name + ": " + LargePacketLoss::kReason);
+    remarks.push_back(phrase<Word::kCameraLargePackets>(access_.name));
   }
   return remarks;
 }
@@ -80,7 +82,7 @@ void CameraSupervisor::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const CameraAction action = machine_.step(rt::now(), facts());
     carryOut(action);
-    std::vector<std::string> remarks = remarksNow();
+    std::vector<Phrase> remarks = remarksNow();
     std::unique_lock lock(mutex_);
     health_ = machine_.health();
     if (camera_) remarks_ = std::move(remarks);  // what a lost camera had stays, it may be why

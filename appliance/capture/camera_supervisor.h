@@ -18,6 +18,7 @@
 #include "appliance/capture/frame_history.h"
 #include "appliance/capture/large_packet_loss.h"
 #include "appliance/capture/packet_counts.h"
+#include "appliance/words/phrase.h"
 #include "hal/camera.h"
 #include "hal/camera_probe.h"
 #include "rt/thread.h"
@@ -69,7 +70,7 @@ class CameraSupervisor {
 
   [[nodiscard]] CameraHealth health() const;
   /// What is not as it should be although it streams, or would: one line each. Any thread.
-  [[nodiscard]] std::vector<std::string> remarks() const;
+  [[nodiscard]] std::vector<Phrase> remarks() const;
   [[nodiscard]] const PacketCounts& packets() const { return packets_; }
   /// Since its last stored frame; nothing before the first.
   [[nodiscard]] std::optional<rt::Nanoseconds> silentFor(rt::Timestamp now) const;
@@ -77,7 +78,7 @@ class CameraSupervisor {
  private:
   void run(const std::stop_token& stop);
   void carryOut(CameraAction action);
-  [[nodiscard]] std::vector<std::string> remarksNow();
+  [[nodiscard]] std::vector<Phrase> remarksNow();
   [[nodiscard]] CameraFacts facts() const;
 
   CameraAccess access_;
@@ -92,10 +93,10 @@ class CameraSupervisor {
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  CameraHealth health_;               // guarded by mutex_
-  std::vector<std::string> remarks_;  // likewise
-  bool settled_ = false;              // likewise
-  rt::Thread thread_;                 // last: joined before anything else goes
+  CameraHealth health_;          // guarded by mutex_
+  std::vector<Phrase> remarks_;  // likewise
+  bool settled_ = false;         // likewise
+  rt::Thread thread_;            // last: joined before anything else goes
 };
 
 }  // namespace appliance

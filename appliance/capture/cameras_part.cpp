@@ -33,8 +33,8 @@ class CamerasPart final : public Part {
     status.history_ms = static_cast<std::uint32_t>(
         stored * periodOf(shared_.config.trigger.rate_hz) / std::chrono::milliseconds(1));
     for (Remark& remark : cameras_.remarks()) status.degraded.push_back(std::move(remark));
-    for (std::string& text : shared_.history.remarks())
-      status.degraded.push_back({"history", std::move(text)});
+    for (const Phrase& remark : shared_.history.remarks())
+      status.degraded.push_back(remarkOf("history", remark));
     status.cameras = cameras_.statuses();
     const CollectorCounts counts = cameras_.counts();
     status.frames_lost = counts.missing;

@@ -1,6 +1,5 @@
 #include "appliance/capture/frame_history.h"
 
-#include <cstdio>
 #include <span>
 #include <utility>
 
@@ -34,24 +33,14 @@ std::optional<HistoryLayout> fitHistory(HistoryLayout layout, std::size_t availa
 
 std::expected<std::unique_ptr<FrameHistory>, std::string> FrameHistory::create(
     const HistoryLayout& layout, HistorySharing sharing) {
-  char line[192];
-  if (layout.slots() > kMostSlots) {
-    std::snprintf(
-        line, sizeof line,
-        "frame history: %zu slots per camera (sets, in flight, pinned) are more than %zu: "
-        "lower history.sets",
-        layout.slots(), kMostSlots);
-    return std::unexpected(std::string(line));
-  }
+  if (layout.slots() > kMostSlots)
+    return std::unexpected(withId(phrase<Word::kHistorySlots>(layout.slots(), kMostSlots)));
   const auto backing = sharing == HistorySharing::kShared ? rt::ArenaBacking::kMemoryFile
                                                           : rt::ArenaBacking::kPrivate;
   auto arena = rt::LockedArena::create(layout.bytes(), rt::LockedArena::kMarginBytes, backing);
   if (!arena) {
-    std::snprintf(line, sizeof line,
-                  "frame history: needs %.2f GB of memory, which is not available (%s): lower "
-                  "history.sets",
-                  static_cast<double>(layout.bytes()) * 1e-9, arena.error().where);
-    return std::unexpected(std::string(line));
+    return std::unexpected(withId(phrase<Word::kHistoryMemory>(
+        static_cast<double>(layout.bytes()) * 1e-9, arena.error().where)));
   }
   return std::unique_ptr<FrameHistory>(new FrameHistory(std::move(*arena), layout, sharing));
 }
@@ -78,10 +67,8 @@ FrameHistory::FrameHistory(rt::LockedArena arena, const HistoryLayout& layout,
 std::expected<FrameReader*, std::string> FrameHistory::openReader(std::string name,
                                                                   std::uint32_t pins_per_camera) {
   if (pins_per_camera > unclaimed_pins_) {
-    return std::unexpected("frame history: reader \"" + name + "\" asks for " +
-                           std::to_string(pins_per_camera) + " pins per camera, " +
-                           std::to_string(unclaimed_pins_) +
-                           " are left: add its pins to HistoryLayout::reserve");
+    return std::unexpected(
+        withId(phrase<Word::kHistoryPins>(name, pins_per_camera, unclaimed_pins_)));
   }
   unclaimed_pins_ -= pins_per_camera;
   readers_.push_back(std::make_unique<FrameReader>(*this, std::move(name), pins_per_camera));
@@ -94,15 +81,13 @@ std::vector<ReaderReport> FrameHistory::readers() const {
   return reports;
 }
 
-std::vector<std::string> FrameHistory::remarks() const {
-  std::vector<std::string> lines;
+std::vector<Phrase> FrameHistory::remarks() const {
+  std::vector<Phrase> remarks;
   for (const ReaderReport& reader : readers()) {
     if (reader.refused == 0) continue;
-    lines.push_back("memory: reader \"" + reader.name + "\" wanted more than its " +
-                    std::to_string(reader.pins_per_camera) +
-                    " frames per camera at once: please report this");
+    remarks.push_back(phrase<Word::kHistoryRefused>(reader.name, reader.pins_per_camera));
   }
-  return lines;
+  return remarks;
 }
 
 std::optional<SharedSlots> FrameHistory::share(const HistoryLayout& layout) {

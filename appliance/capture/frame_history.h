@@ -11,6 +11,7 @@
 #include "appliance/capture/camera_frames.h"
 #include "appliance/capture/frame_reader.h"
 #include "appliance/capture/shared_slots.h"
+#include "appliance/words/phrase.h"
 #include "rt/annotations.h"
 #include "rt/memory.h"
 
@@ -54,7 +55,7 @@ class FrameHistory {
                                                                     std::uint32_t pins_per_camera);
   [[nodiscard]] std::vector<ReaderReport> readers() const;
   /// Readers that were refused a pin, one line each.
-  [[nodiscard]] std::vector<std::string> remarks() const;
+  [[nodiscard]] std::vector<Phrase> remarks() const;
 
   [[nodiscard]] CameraFrames& camera(std::uint32_t index) RT_SAFE { return *cameras_[index]; }
   [[nodiscard]] const CameraFrames& camera(std::uint32_t index) const RT_SAFE {

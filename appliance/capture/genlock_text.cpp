@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "appliance/capture/genlock.h"
-#include "appliance/words/phrase.h"
 
 namespace appliance {
 namespace {
@@ -28,47 +27,61 @@ std::optional<Ratio> ratioOf(double trigger_hz, double refresh_hz) {
   return std::nullopt;
 }
 
-std::string mistunedText(double trigger_hz, double refresh_hz) {
+Phrase mistuned(double trigger_hz, double refresh_hz) {
   const auto ratio = ratioOf(trigger_hz, refresh_hz);
-  const double vblanks = std::floor(refresh_hz / trigger_hz);
-  const Phrase now = ratio ? phrase<Word::kGenlockRatio>(trigger_hz, refresh_hz, ratio->p, ratio->q)
-                           : phrase<Word::kGenlockNoRatio>(trigger_hz, refresh_hz);
-  const Phrase better = vblanks >= 1 ? phrase<Word::kGenlockWouldLockTwo>(
-                                           refresh_hz / (vblanks + 1), refresh_hz / vblanks)
-                                     : phrase<Word::kGenlockWouldLock>(refresh_hz);
-  return textOf(now) + "; " + textOf(better);
+  return ratio ? phrase<Word::kGenlockRatio>(trigger_hz, refresh_hz, ratio->p, ratio->q)
+               : phrase<Word::kGenlockNoRatio>(trigger_hz, refresh_hz);
 }
 
-std::string lockedText(const GenlockStatus& status) {
-  std::string text = textOf(phrase<Word::kGenlockLocked>(
-      status.vblanks_per_trigger, 1e9 / status.vblank_period_ns, status.phase_error_rms_ns / 1e3,
-      static_cast<double>(status.lead.count()) / 1e6));
-  if (status.hold_over) text += "; " + textOf(phrase<Word::kGenlockHeldOver>());
-  return text;
+/// Trigger rates that would lock.
+Phrase betterRates(double trigger_hz, double refresh_hz) {
+  const double vblanks = std::floor(refresh_hz / trigger_hz);
+  return vblanks >= 1
+             ? phrase<Word::kGenlockWouldLockTwo>(refresh_hz / (vblanks + 1), refresh_hz / vblanks)
+             : phrase<Word::kGenlockWouldLock>(refresh_hz);
+}
+
+Phrase locked(const GenlockStatus& status) {
+  return phrase<Word::kGenlockLocked>(status.vblanks_per_trigger, 1e9 / status.vblank_period_ns,
+                                      status.phase_error_rms_ns / 1e3,
+                                      static_cast<double>(status.lead.count()) / 1e6);
+}
+
+Phrase freeRunning(const GenlockStatus& status, double trigger_hz) {
+  switch (status.reason) {
+    case GenlockReason::kRatio:
+      return mistuned(trigger_hz, 1e9 / status.vblank_period_ns);
+    case GenlockReason::kNoFrames:
+      return phrase<Word::kGenlockNoFrames>();
+    default:
+      return phrase<Word::kGenlockNoVblanks>();
+  }
 }
 
 }  // namespace
 
-std::string genlockText(const GenlockStatus& status, double trigger_hz) {
+Phrase genlockPhrase(const GenlockStatus& status, double trigger_hz) {
   switch (status.state) {
     case GenlockState::kOff:
-      return textOf(phrase<Word::kGenlockOff>());
+      return phrase<Word::kGenlockOff>();
     case GenlockState::kLocked:
-      return lockedText(status);
+      return locked(status);
     case GenlockState::kAcquiring:
-      return textOf(status.reason == GenlockReason::kPhaseLost ? phrase<Word::kGenlockReacquiring>()
-                                                               : phrase<Word::kGenlockAcquiring>());
+      return status.reason == GenlockReason::kPhaseLost ? phrase<Word::kGenlockReacquiring>()
+                                                        : phrase<Word::kGenlockAcquiring>();
     case GenlockState::kFreeRunning:
       break;
   }
-  switch (status.reason) {
-    case GenlockReason::kRatio:
-      return mistunedText(trigger_hz, 1e9 / status.vblank_period_ns);
-    case GenlockReason::kNoFrames:
-      return textOf(phrase<Word::kGenlockNoFrames>());
-    default:
-      return textOf(phrase<Word::kGenlockNoVblanks>());
-  }
+  return freeRunning(status, trigger_hz);
+}
+
+std::string genlockText(const GenlockStatus& status, double trigger_hz) {
+  std::string text = textOf(genlockPhrase(status, trigger_hz));
+  if (status.state == GenlockState::kLocked && status.hold_over)
+    text += "; " + textOf(phrase<Word::kGenlockHeldOver>());
+  if (status.state == GenlockState::kFreeRunning && status.reason == GenlockReason::kRatio)
+    text += "; " + textOf(betterRates(trigger_hz, 1e9 / status.vblank_period_ns));
+  return text;
 }
 
 }  // namespace appliance

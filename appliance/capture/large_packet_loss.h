@@ -36,8 +36,6 @@ class LargePacketLoss {
   }
 
   static constexpr std::uint64_t kFrames = 3;
-  static constexpr const char* kReason =
-      "every large packet vanishes: was the MTU lowered? Check the network card and the switch";
 
  private:
   std::uint32_t packets_;

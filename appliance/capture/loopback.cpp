@@ -3,6 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 namespace {
 
@@ -22,34 +24,22 @@ constexpr rt::Nanoseconds kStopPoll = 100ms;
 constexpr int kLooksForTrigger = 5;
 constexpr rt::Nanoseconds kBetweenLooks = 1ms;
 
-const std::string kPolarity =
-    "trigger: polarity wrong: the loop-back reads active while the line is inactive: change "
-    "trigger.active_low, or trigger.loopback_active_low if only the loop-back is inverted";
-
-std::string noEdge(const char* what) {
-  return std::string("trigger: no edge came back: ") + what +
-         ": check the wire from the trigger line to trigger.loopback_line";
-}
-
 }  // namespace
 
 std::expected<void, std::string> judgeLoopback(const LoopbackReading& reading) {
-  if (reading.before && !reading.during && reading.after) return std::unexpected(kPolarity);
+  const auto wrong = [](const Phrase& why) { return std::unexpected(textOf(why)); };
+  if (reading.before && !reading.during && reading.after)
+    return wrong(phrase<Word::kLoopbackPolarity>());
   if (reading.before == reading.during)
-    return std::unexpected(
-        noEdge(reading.before ? "the loop-back stays active" : "the loop-back stays inactive"));
-  if (reading.after != reading.before)
-    return std::unexpected(noEdge("the loop-back changed once and stayed so"));
-  if (!reading.edge)
-    return std::unexpected(noEdge("the loop-back's level follows, but its chip stamps no edges"));
+    return wrong(reading.before ? phrase<Word::kLoopbackStaysActive>()
+                                : phrase<Word::kLoopbackStaysInactive>());
+  if (reading.after != reading.before) return wrong(phrase<Word::kLoopbackOnce>());
+  if (!reading.edge) return wrong(phrase<Word::kLoopbackNoStamps>());
   return {};
 }
 
 std::expected<void, std::string> checkLoopback(hal::TriggerLine& line, hal::EdgeInput& input) {
-  const auto unreadable = [] {
-    return std::unexpected(
-        std::string("trigger: the loop-back cannot be checked: its line or the trigger's is gone"));
-  };
+  const auto unreadable = [] { return std::unexpected(textOf(phrase<Word::kLoopbackGone>())); };
   const rt::Timestamp patience = rt::now() + kLongestUnrest;
   while (input.waitEdge(kQuiet) && rt::now() < patience) {
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 namespace {
 
@@ -10,10 +12,10 @@ namespace {
 constexpr std::size_t kMostBlockBytes = std::size_t{1} << 30U;
 
 std::string refusal(const rt::Error& error, std::size_t made) {
-  std::string line = std::string("the frame history cannot be shared: ") + error.where;
-  if (error.os_errno != 0) line += std::string(": ") + std::strerror(error.os_errno);
-  if (error.os_errno == EMFILE) line += ": raise LimitNOFILE";
-  return made == 0 ? line : line + " (after " + std::to_string(made) + " dma-bufs)";
+  std::string what = error.where;
+  if (error.os_errno != 0) what += std::string(": ") + std::strerror(error.os_errno);
+  return textOf(error.os_errno == EMFILE ? phrase<Word::kHistoryFileLimit>(made, what)
+                                         : phrase<Word::kHistoryNotShared>(made, what));
 }
 
 }  // namespace
@@ -38,9 +40,7 @@ std::expected<SharedSlots, std::string> SharedSlots::create(
   const std::size_t most_bytes = std::min(rt::mostDmaBufBytes(), kMostBlockBytes);
   const std::vector<SlotBlock> blocks = planBlocks(slot_bytes, most_bytes);
   if (blocks.empty()) {
-    return std::unexpected("the frame history cannot be shared: a frame exceeds " +
-                           std::to_string(most_bytes >> 20U) +
-                           " MiB: raise the module parameter udmabuf.size_limit_mb");
+    return std::unexpected(textOf(phrase<Word::kHistoryLargeFrame>(most_bytes >> 20U)));
   }
   SharedSlots shared;
   shared.parts_.reserve(slot_bytes.size());

@@ -70,7 +70,9 @@ class TriggerPart final : public Part {
   void report(Status& status) const override {
     status.triggers = shared_.board.edges.newest();
     status.genlock = shared_.board.genlock.status.load();
-    status.genlock_text = genlockText(status.genlock, shared_.config.trigger.rate_hz);
+    const double rate_hz = shared_.config.trigger.rate_hz;
+    status.genlock_text = genlockText(status.genlock, rate_hz);
+    status.genlock_word = genlockPhrase(status.genlock, rate_hz).word;
     if (loop_.failing())
       status.degraded.push_back(remarkOf("trigger", phrase<Word::kTriggerGone>()));
   }
@@ -92,7 +94,7 @@ class TriggerPart final : public Part {
 MadePart makeTriggerPart(const Shared& shared) {
   const TriggerSettings& config = shared.config.trigger;
   auto line = openTriggerLine(config);
-  if (!line) return std::unexpected(line.error());
+  if (!line) return std::unexpected(withId(Word::kTriggerRefused, line.error()));
   std::unique_ptr<hal::EdgeInput> loopback;
   if (!config.loopback_line.empty()) {
     auto opened = openLoopback(config, **line);

@@ -7,11 +7,18 @@
 
 #include <systemd/sd-bus.h>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 
+/// The D-Bus error that says @p word: "org.kagami.Kagami1.Error.NoSuchView".
+[[nodiscard]] inline std::string errorName(Word word) {
+  return "org.kagami.Kagami1.Error." + std::string(nameOf(word));
+}
+
 /// The answer of a method that was refused.
-inline int refuse(sd_bus_error* error, const std::string& why) {
-  return sd_bus_error_set(error, SD_BUS_ERROR_INVALID_ARGS, why.c_str());
+inline int refuse(sd_bus_error* error, const Phrase& why) {
+  return sd_bus_error_set(error, errorName(why.word).c_str(), textOf(why).c_str());
 }
 
 /// The result of @p body. An exception becomes an error for the caller: it must not cross sd-bus,

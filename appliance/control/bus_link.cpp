@@ -37,8 +37,8 @@ BusLink::~BusLink() = default;
 
 void BusLink::look(rt::Timestamp now) {
   if (bus_ && !owns_name_ && !failed_ && now >= patience_ends_)
-    fail(describeBus(which_) + " does not answer");
-  if (owns_name_ && isStuck(bus_.get())) fail(describeBus(which_) + " takes no more messages");
+    fail(phrase<Word::kBusSilent>(describeBus(which_)));
+  if (owns_name_ && isStuck(bus_.get())) fail(phrase<Word::kBusStuck>(describeBus(which_)));
   if (failed_) {
     close();
     next_try_ = now + kRetry;
@@ -49,7 +49,7 @@ void BusLink::look(rt::Timestamp now) {
 void BusLink::connect(rt::Timestamp now) {
   auto opened = startBus(which_);
   if (!opened) {
-    trouble_ = opened.error();
+    trouble_ = phrase<Word::kBusUnreachable>(opened.error());
     next_try_ = now + kRetry;
     return;
   }
@@ -58,7 +58,7 @@ void BusLink::connect(rt::Timestamp now) {
   sd_bus* bus = bus_.get();
   const auto on_loss = [](sd_bus_message*, void* link, sd_bus_error*) {
     auto& self = *static_cast<BusLink*>(link);
-    self.fail("lost " + describeBus(self.which_));
+    self.fail(phrase<Word::kBusLost>(describeBus(self.which_)));
     return 0;
   };
   const auto on_name = [](sd_bus_message* reply, void* link, sd_bus_error*) {
@@ -70,32 +70,30 @@ void BusLink::connect(rt::Timestamp now) {
   if (r >= 0) r = events_.offer(bus);
   if (r >= 0) r = sd_bus_attach_event(bus, loop_.handle(), EventLoop::kBusPriority);
   if (r >= 0) r = sd_bus_request_name_async(bus, nullptr, name_.c_str(), 0, on_name, this);
-  if (r < 0)
-    fail("not allowed to be " + title() + " (" + std::strerror(-r) + "): is the name valid?");
+  if (r < 0) fail(phrase<Word::kBusNameInvalid>(title(), std::strerror(-r)));
 }
 
 void BusLink::onName(sd_bus_message* reply) {
   if (const sd_bus_error* error = sd_bus_message_get_error(reply); error != nullptr) {
     const char* why = error->message != nullptr ? error->message : error->name;
-    fail("not allowed to be " + title() + " (" + why +
-         "): is its policy file installed and the name valid?");
+    fail(phrase<Word::kBusNameRefused>(title(), why));
     return;
   }
   std::uint32_t result = 0;
   if (sd_bus_message_read(reply, "u", &result) < 0) result = 0;
   if (result != kPrimaryOwner && result != kAlreadyOwner) {
-    fail(name_ + " is taken on " + describeBus(which_) + ": is another kagamid running?");
+    fail(phrase<Word::kBusNameTaken>(name_, describeBus(which_)));
     return;
   }
   owns_name_ = true;
-  trouble_.clear();
+  trouble_ = {};
 }
 
 /// The first trouble of a connection is its cause; what follows from it says less.
-void BusLink::fail(std::string trouble) {
+void BusLink::fail(const Phrase& trouble) {
   if (failed_) return;
   failed_ = true;
-  trouble_ = std::move(trouble);
+  trouble_ = trouble;
 }
 
 void BusLink::close() {

@@ -6,6 +6,7 @@
 
 #include "appliance/control/bus.h"
 #include "appliance/loop/event_loop.h"
+#include "appliance/words/phrase.h"
 #include "rt/clock.h"
 
 namespace appliance {
@@ -14,7 +15,7 @@ namespace appliance {
 /// runs: a bus that is not there, goes away or gives the name to another program is tried again.
 ///
 /// Threads  The event loop's. Nothing here blocks.
-/// Errors   trouble(): one line while there is no connection.
+/// Errors   trouble(), while there is no connection.
 class BusLink {
  public:
   static constexpr rt::Nanoseconds kRetry = std::chrono::seconds(5);
@@ -38,7 +39,7 @@ class BusLink {
   [[nodiscard]] sd_bus* bus() const { return owns_name_ ? bus_.get() : nullptr; }
 
   /// What is wrong and what to do; empty: nothing, or not known yet.
-  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] const Phrase& trouble() const { return trouble_; }
 
   /// "org.kagami.Kagami1 on the system bus"
   [[nodiscard]] std::string title() const { return name_ + " on " + describeBus(which_); }
@@ -46,7 +47,7 @@ class BusLink {
  private:
   void connect(rt::Timestamp now);
   void close();
-  void fail(std::string trouble);
+  void fail(const Phrase& trouble);
   void onName(sd_bus_message* reply);
 
   EventLoop& loop_;
@@ -58,7 +59,7 @@ class BusLink {
   bool failed_ = false;  // to be closed at the next look, outside of its own callbacks
   rt::Timestamp next_try_;
   rt::Timestamp patience_ends_;
-  std::string trouble_;
+  Phrase trouble_;
 };
 
 }  // namespace appliance

@@ -8,12 +8,13 @@
 
 #include "appliance/director/command.h"
 #include "appliance/status/status.h"
+#include "appliance/words/phrase.h"
 
 /// What a request of the control interface means in the present state: pure.
-/// Errors   One line for the person who asked.
+/// Errors   What is wrong, for the person who asked.
 namespace appliance {
 
-using Requested = std::expected<Command, std::string>;
+using Requested = std::expected<Command, Phrase>;
 
 /// A command that names the state, so that the same request twice changes nothing.
 [[nodiscard]] Requested requestMode(std::string_view mode);
@@ -29,14 +30,13 @@ using Requested = std::expected<Command, std::string>;
 /// nothing else counts then. @p view: of the second shot, from 1; 0: the first's.
 [[nodiscard]] Requested requestCompare(std::string_view layout, std::uint32_t view,
                                        std::uint32_t earlier_ms, double share, const Status& now);
-[[nodiscard]] std::expected<std::array<double, 3>, std::string> requestTarget(double x_m,
-                                                                              double y_m,
-                                                                              double z_m);
+[[nodiscard]] std::expected<std::array<double, 3>, Phrase> requestTarget(double x_m, double y_m,
+                                                                         double z_m);
 
-/// Why the director did not do what was asked, and what to do; empty: it did.
-[[nodiscard]] std::string_view refusalOf(CommandOutcome outcome);
+/// Why the director refused a command, and what to do; empty: it did not.
+[[nodiscard]] Phrase refusalOf(CommandOutcome outcome);
 
 /// The text of a rig file, unless it is larger than any.
-[[nodiscard]] std::expected<std::string, std::string> requestRig(std::string_view text);
+[[nodiscard]] std::expected<std::string, Phrase> requestRig(std::string_view text);
 
 }  // namespace appliance

@@ -46,7 +46,7 @@ struct ControlServer::Implementation {
   ControlSink& sink;
   const StatusSource& source;
   Status status;     // of the last tick
-  std::string json;  // the same, once somebody asked
+  std::string json;  // the same, made for the first client that asks
   std::vector<sd_bus_vtable> properties;
   std::vector<BusObject> objects;
   std::set<std::string> screen_holders;  // unique names
@@ -62,11 +62,15 @@ namespace {
 using Server = ControlServer::Implementation;
 
 int busy(sd_bus_error* error) {
-  return sd_bus_error_set(error, SD_BUS_ERROR_LIMITS_EXCEEDED,
-                          "too many requests wait to be carried out: try again");
+  return refuse(error, phrase<Word::kTooManyRequests>());
 }
 
-/// Gives one request to the director; its message is answered when that has carried it out.
+/// The late answer of a method that was refused.
+void replyError(sd_bus_message* call, const Phrase& why) {
+  (void)sd_bus_reply_method_errorf(call, errorName(why.word).c_str(), "%s", textOf(why).c_str());
+}
+
+/// Gives one request to the director, which answers its message after carrying it out.
 int answer(Server& server, sd_bus_message* message, const Requested& requested,
            sd_bus_error* error) {
   if (!requested) return refuse(error, requested.error());
@@ -189,8 +193,6 @@ int getProperty(Server& server, const char* name, sd_bus_message* reply) {
 }
 
 constexpr rt::Nanoseconds kDirectorsTime = std::chrono::seconds(1);
-constexpr const char* kRefusedError = "org.kagami.Kagami1.Error.Refused";
-constexpr const char* kNotAppliedError = "org.kagami.Kagami1.Error.NotApplied";
 
 // Who may call is the bus's policy (systemd/org.kagami.Kagami1.conf), not sd-bus's own rule.
 constexpr std::uint64_t kOpenToAll = SD_BUS_VTABLE_UNPRIVILEGED;
@@ -294,20 +296,17 @@ int ControlServer::Implementation::await(sd_bus_message* message, CommandId id) 
 void ControlServer::Implementation::answer(const CommandAnswer& answer) {
   const auto call = waiting.take(answer.id);
   if (!call) return;
-  const std::string why(refusalOf(answer.outcome));
+  const Phrase why = refusalOf(answer.outcome);
   // A failure means a bus that is being lost, and with it the caller.
-  if (why.empty()) {
+  if (why.empty())
     (void)sd_bus_reply_method_return(call->get(), "");
-  } else {
-    (void)sd_bus_reply_method_errorf(call->get(), kRefusedError, "%s", why.c_str());
-  }
+  else
+    replyError(call->get(), why);
 }
 
 void ControlServer::Implementation::giveUp(rt::Timestamp now) {
   for (const Message& call : waiting.takeOverdue(now))
-    (void)sd_bus_reply_method_errorf(call.get(), kNotAppliedError,
-                                     "the director has not carried it out within 1 s: see kagami "
-                                     "status");
+    replyError(call.get(), phrase<Word::kNotApplied>());
 }
 
 void ControlServer::Implementation::releaseFor(const std::string& peer) {
@@ -357,10 +356,8 @@ bool ControlServer::connected() const {
 }
 
 std::string ControlServer::trouble() const {
-  const std::string& why = implementation_->link.trouble();
-  if (why.empty()) return why;
-  return "no control interface: " + why +
-         "; kagami status and remote commands do not work, the rest does; tried again every 5 s";
+  const Phrase& why = implementation_->link.trouble();
+  return why.empty() ? std::string() : textOf(phrase<Word::kControlMissing>(textOf(why)));
 }
 
 std::string ControlServer::title() const {

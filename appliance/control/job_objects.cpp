@@ -45,7 +45,7 @@ int onGet(sd_bus* /*bus*/, const char* path, const char* /*interface*/, const ch
 
 int cancel(JobRegistry& jobs, sd_bus_message* message, sd_bus_error* error) {
   if (!jobs.cancel(idOf(sd_bus_message_get_path(message))))
-    return refuse(error, "there is no such job any more");
+    return refuse(error, phrase<Word::kNoSuchJob>());
   return sd_bus_reply_method_return(message, "");
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 namespace {
 
@@ -29,12 +31,11 @@ std::expected<DepthReader*, std::string> DepthBoard::openReader(std::string name
                                                                 std::uint32_t pins) {
   const std::size_t count = reader_count_.load(std::memory_order_relaxed);
   if (count == kMostReaders) {
-    return std::unexpected("depth board: no room for the reader " + name + ", there are " +
-                           std::to_string(kMostReaders) + " already");
+    return std::unexpected(withId(phrase<Word::kDepthReaders>(name, kMostReaders)));
   }
   if (pins > kMostPins - budgeted_pins_) {
-    return std::unexpected("depth board: the reader " + name + " asks for " + std::to_string(pins) +
-                           " pins, " + std::to_string(kMostPins - budgeted_pins_) + " are left");
+    return std::unexpected(
+        withId(phrase<Word::kDepthPins>(name, pins, kMostPins - budgeted_pins_)));
   }
   budgeted_pins_ += pins;
   readers_[count] = std::make_unique<DepthReader>(*this, std::move(name), pins);

@@ -43,24 +43,19 @@ std::vector<std::string> coverLines(const Rig& rig, std::uint32_t width_px, std:
                          "filled at zoom 1", "picture shown"));
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
     lines.push_back(lineOf(rig, i, cover.needed[i], shown));
-  if (std::string warning = coverWarning(rig, cover.worst, cover.needed[cover.worst]);
+  if (const Phrase warning = coverWarning(rig, cover.worst, cover.needed[cover.worst]);
       !warning.empty())
-    lines.push_back(std::move(warning));
+    lines.push_back(textOf(warning));
   return lines;
 }
 
-std::string coverWarning(const Rig& rig, std::uint32_t worst, double needed_zoom) {
-  if (!(needed_zoom > kMostCoverZoom)) return "";
-  return format(
-      "picture: %s would need zoom %.1f to fill the screen, %.1f is used: aim it at the "
-      "target, or make the rig's target_volume smaller",
-      titleOf(rig, worst).c_str(), needed_zoom, kMostCoverZoom);
+Phrase coverWarning(const Rig& rig, std::uint32_t worst, double needed_zoom) {
+  if (!(needed_zoom > kMostCoverZoom)) return {};
+  return phrase<Word::kViewZoom>(titleOf(rig, worst), needed_zoom, kMostCoverZoom);
 }
 
-std::string blindLine(const Rig& rig, std::size_t camera) {
-  return titleOf(rig, camera) +
-         " does not have the target in its picture: its neighbours are shown; aim it again or set "
-         "another target";
+Phrase blindWarning(const Rig& rig, std::size_t camera) {
+  return phrase<Word::kViewBlind>(titleOf(rig, camera));
 }
 
 }  // namespace appliance

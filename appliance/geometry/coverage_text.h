@@ -7,6 +7,7 @@
 
 #include "appliance/geometry/coverage.h"
 #include "appliance/geometry/rig.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -17,11 +18,11 @@ namespace appliance {
                                                   std::uint32_t height_px,
                                                   std::optional<double> fixed_zoom);
 
-/// That camera @p worst needs @p needed_zoom to cover the screen, which is more than is used, and
-/// what to do; empty if it is not.
-[[nodiscard]] std::string coverWarning(const Rig& rig, std::uint32_t worst, double needed_zoom);
+/// Camera @p worst needs @p needed_zoom to cover the screen, which is more than is used. Empty if
+/// it is not more.
+[[nodiscard]] Phrase coverWarning(const Rig& rig, std::uint32_t worst, double needed_zoom);
 
-/// "camera 7 (cam07) does not have the target in its picture: ..."
-[[nodiscard]] std::string blindLine(const Rig& rig, std::size_t camera);
+/// "camera 7 (cam07) does not have the target in its picture, ..."
+[[nodiscard]] Phrase blindWarning(const Rig& rig, std::size_t camera);
 
 }  // namespace appliance

@@ -10,31 +10,27 @@ std::string sizeText(const RigCamera& camera) {
   return std::to_string(camera.width_px) + "x" + std::to_string(camera.height_px);
 }
 
-/// What a running camera would have to change, or empty.
-std::string differenceOf(const RigCamera& running, const RigCamera& next) {
+/// What running camera @p number would have to change; empty: nothing.
+Phrase differenceOf(std::size_t number, const RigCamera& running, const RigCamera& next) {
   if (next.name != running.name)
-    return "is called \"" + next.name + "\" in this rig and \"" + running.name +
-           "\" in the running one: keep the cameras' order and names";
+    return phrase<Word::kRigOtherName>(number, next.name, running.name);
   if (next.width_px != running.width_px || next.height_px != running.height_px)
-    return "sends " + sizeText(running) + " pixels, this rig says " + sizeText(next) +
-           ": calibrate with the running size, or restart kagamid with this rig";
+    return phrase<Word::kRigOtherSize>(number, sizeText(running), sizeText(next));
   if (next.pixel_format != running.pixel_format)
-    return std::string("sends ") + hal::genicamName(running.pixel_format) + ", this rig says " +
-           hal::genicamName(next.pixel_format) + ": restart kagamid with this rig";
-  return "";
+    return phrase<Word::kRigOtherFormat>(number, hal::genicamName(running.pixel_format),
+                                         hal::genicamName(next.pixel_format));
+  return {};
 }
 
 }  // namespace
 
-std::expected<void, std::string> checkReplaces(const Rig& running, const Rig& next) {
+std::expected<void, Phrase> checkReplaces(const Rig& running, const Rig& next) {
   if (next.cameras.size() != running.cameras.size())
-    return std::unexpected("this rig has " + std::to_string(next.cameras.size()) + " cameras, " +
-                           std::to_string(running.cameras.size()) +
-                           " are running: restart kagamid with this rig");
+    return std::unexpected(
+        phrase<Word::kRigOtherCount>(next.cameras.size(), running.cameras.size()));
   for (std::size_t i = 0; i < next.cameras.size(); ++i) {
-    const std::string difference = differenceOf(running.cameras[i], next.cameras[i]);
-    if (!difference.empty())
-      return std::unexpected("camera " + std::to_string(i + 1) + " " + difference);
+    const Phrase difference = differenceOf(i + 1, running.cameras[i], next.cameras[i]);
+    if (!difference.empty()) return std::unexpected(difference);
   }
   return {};
 }
@@ -47,15 +43,13 @@ RigShelf::RigShelf(Rig first) {
   newest_.store(kSlots + *slot, std::memory_order_release);
 }
 
-std::expected<std::uint64_t, std::string> RigShelf::put(Rig next) {
+std::expected<std::uint64_t, Phrase> RigShelf::put(Rig next) {
   const std::uint64_t word = newest_.load(std::memory_order_relaxed);
   const auto newest_slot = static_cast<std::uint32_t>(word % kSlots);
   if (auto fits = checkReplaces(rigs_[newest_slot], next); !fits)
-    return std::unexpected(std::move(fits.error()));
+    return std::unexpected(fits.error());
   const auto slot = pool_.tryAcquire();
-  if (!slot)
-    return std::unexpected("all " + std::to_string(kSlots) +
-                           " places for rigs are in use: try again in a moment");
+  if (!slot) return std::unexpected(phrase<Word::kRigShelfFull>(kSlots));
   const std::uint64_t revision = word / kSlots + 1;
   rigs_[*slot] = std::move(next);
   pool_.publish(*slot, revision);

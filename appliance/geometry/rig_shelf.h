@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "appliance/geometry/rig.h"
+#include "appliance/words/phrase.h"
 #include "rt/annotations.h"
 #include "rt/slot_pool.h"
 
@@ -16,8 +17,8 @@ namespace appliance {
 /// Whether @p next can replace @p running while the cameras run: as many cameras, of the same
 /// names, sizes and pixel formats in the same order. What remains may differ: poses, lenses,
 /// colour, the working point.
-/// Errors  One line: which camera, what differs, what to do.
-[[nodiscard]] std::expected<void, std::string> checkReplaces(const Rig& running, const Rig& next);
+/// Errors  Which camera, what differs, what to do.
+[[nodiscard]] std::expected<void, Phrase> checkReplaces(const Rig& running, const Rig& next);
 
 /// Keeps one rig of the shelf in place while it lives.
 /// Threads  One at a time.
@@ -58,7 +59,7 @@ class RigShelf {
   explicit RigShelf(Rig first);
 
   /// The new revision. Refuses a rig that does not fit, or any while readers hold all slots.
-  [[nodiscard]] std::expected<std::uint64_t, std::string> put(Rig next);
+  [[nodiscard]] std::expected<std::uint64_t, Phrase> put(Rig next);
 
   [[nodiscard]] RigPin newest() RT_SAFE;
   [[nodiscard]] std::uint64_t revision() const RT_SAFE {

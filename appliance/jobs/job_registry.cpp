@@ -4,12 +4,13 @@
 #include <ranges>
 #include <utility>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 
 std::expected<JobId, std::string> JobRegistry::start(JobOrder order) {
   if (running() >= kMostRunning)
-    return std::unexpected(std::to_string(kMostRunning) +
-                           " jobs are running: wait for one of them, or cancel it");
+    return std::unexpected(withId(phrase<Word::kTooManyJobs>(kMostRunning)));
   const JobId id = ++last_;
   JobReport report = order.work->report();
   jobs_.emplace(id, Job{.kind = std::move(order.kind),

@@ -3,6 +3,8 @@
 #include <exception>
 #include <utility>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 
 std::expected<std::unique_ptr<JobThread>, std::string> JobThread::start(Body body) {
@@ -11,7 +13,7 @@ std::expected<std::unique_ptr<JobThread>, std::string> JobThread::start(Body bod
   auto thread = rt::Thread::start(
       {.name = "job"},
       [&made, body = std::move(body)](const std::stop_token& stop) { made.run(body, stop); });
-  if (!thread) return std::unexpected("no thread for a job: " + std::string(thread.error().where));
+  if (!thread) return std::unexpected(withId(phrase<Word::kJobThread>(thread.error().where)));
   job->thread_ = std::move(*thread);
   return job;
 }

@@ -1,20 +1,19 @@
 #include "appliance/journal/condition_log.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
+
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 namespace {
 
 std::string lasted(rt::Nanoseconds time) {
-  char text[64];
-  std::snprintf(text, sizeof text, " (after %.1f s)", std::chrono::duration<double>(time).count());
-  return text;
+  return " " + textOf(phrase<Word::kLasted>(std::chrono::duration<double>(time).count()));
 }
 
 std::string timesSince(std::uint64_t begins) {
-  return " (" + std::to_string(begins) + " times since the last line)";
+  return " " + textOf(phrase<Word::kTimesSince>(begins));
 }
 
 }  // namespace
@@ -66,7 +65,9 @@ void ConditionLog::follow(Entry& entry, const Condition& condition, rt::Timestam
   const std::uint64_t counted = condition.begins > before ? condition.begins - before : 0;
   if (condition.now != Condition::Now::kHolds) {
     entry.unsaid += counted;
-    if (!condition.end.empty()) entry.last.end = condition.end;
+    if (condition.end.empty()) return;
+    entry.last.end = condition.end;
+    entry.last.end_word = condition.end_word;
     return;
   }
   const bool begins = !held || entry.last.kind != condition.kind;
@@ -95,7 +96,8 @@ JournalLine ConditionLog::lineOf(const Entry& entry, rt::Timestamp now) {
             condition.word};
   }
   if (entry.unsaid > 0) {  // it began and ended since the last line
-    return {condition.level, condition.text + timesSince(entry.unsaid) + "; over now",
+    return {condition.level,
+            condition.text + timesSince(entry.unsaid) + "; " + textOf(phrase<Word::kOverNow>()),
             condition.word};
   }
   return {condition.end_level, condition.end + lasted(now - entry.began), condition.end_word};

@@ -28,22 +28,28 @@ bool journalReads() {
   return fstat(STDERR_FILENO, &file) == 0 && isJournal(std::getenv("JOURNAL_STREAM"), file);
 }
 
-}  // namespace
-
-void log(LogLevel level, std::string_view line) {
+void write(LogLevel level, const std::string& line) {
   static const bool journal = journalReads();
   const Prefix& prefix = kPrefixes[static_cast<std::size_t>(level)];
-  std::fprintf(stderr, "%s%.*s\n", journal ? prefix.level : prefix.word,
-               static_cast<int>(line.size()), line.data());
+  std::fprintf(stderr, "%s%s\n", journal ? prefix.level : prefix.word, line.c_str());
 }
 
+}  // namespace
+
 std::string withId(const JournalLine& line) {
-  if (line.word == Word::kNothing) return line.text;
-  return "[" + std::string(idOf(line.word)) + "] " + line.text;
+  return withId(line.word, line.text);
 }
 
 void log(const JournalLine& line) {
-  log(line.level, withId(line));
+  write(line.level, withId(line));
+}
+
+void log(LogLevel level, const Phrase& phrase) {
+  write(level, withId(phrase));
+}
+
+void logError(const std::string& error) {
+  write(LogLevel::kError, withId(Word::kFailed, error));
 }
 
 bool isJournal(const char* journal_stream, const struct stat& file) {

@@ -2,11 +2,10 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 #include <sys/stat.h>
 
-#include "appliance/words/word.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -27,26 +26,19 @@ struct JournalLine {
 };
 
 /// Lines for people, on standard error: with syslog levels if the journal reads them, else with
-/// words.
+/// words. Each carries its id.
 ///
 /// Threads  main.
 /// RT       Not safe.
-void log(LogLevel level, std::string_view line);
-
 void log(const JournalLine& line);
+
+void log(LogLevel level, const Phrase& phrase);
+
+/// An error as a function returned it: with an id, or in a backend's own words.
+void logError(const std::string& error);
 
 /// The line as it is written, without its level.
 [[nodiscard]] std::string withId(const JournalLine& line);
-
-inline void logInfo(std::string_view line) {
-  log(LogLevel::kInfo, line);
-}
-inline void logWarning(std::string_view line) {
-  log(LogLevel::kWarning, line);
-}
-inline void logError(std::string_view line) {
-  log(LogLevel::kError, line);
-}
 
 /// Whether @p file is the journal's stream, as $JOURNAL_STREAM names it: "DEVICE:INODE". Terminals
 /// and other programs inherit the variable, so that its presence alone says nothing.

@@ -25,7 +25,7 @@ Condition ofCamera(std::size_t index, const CameraStatus& camera) {
 }
 
 Condition ofScreen(const Status& status) {
-  const std::string state = "screen: " + std::string(nameOf(status.screen));
+  const std::string state = textOf(phrase<Word::kScreenState>(nameOf(status.screen)));
   const std::string& message = status.screen_message;
   const bool shows = status.screen == hal::ScreenState::kShowing;
   return {.key = "screen",
@@ -34,9 +34,10 @@ Condition ofScreen(const Status& status) {
           .level =
               status.screen == hal::ScreenState::kReleased ? LogLevel::kNotice : LogLevel::kWarning,
           .text = message.empty() ? state : state + ": " + message,
-          .end = state};
+          .end = state,
+          .word = message.empty() ? Word::kScreenState : status.screen_word,
+          .end_word = Word::kScreenState};
 }
-
 /// A lock is the good condition; the way to the first one is no news.
 Condition ofGenlock(const Status& status) {
   const GenlockStatus& genlock = status.genlock;
@@ -48,6 +49,8 @@ Condition ofGenlock(const Status& status) {
           .text = line,
           .end_level = LogLevel::kWarning,
           .end = line,
+          .word = status.genlock_word,
+          .end_word = status.genlock_word,
           .begins = genlock.unlocks + (locked ? 1 : 0)};
 }
 
@@ -58,13 +61,14 @@ Condition ofRatio(const Status& status) {
           .level = LogLevel::kNotice,
           .text = "genlock " + status.genlock_text,
           .end = "genlock: " + textOf(phrase<Word::kGenlockFits>()),
+          .word = status.genlock_word,
           .end_word = Word::kGenlockFits};
 }
 
-/// The word tells remarks apart. What a backend says inside of it is another kind of the same
-/// condition if it differs in more than its numbers.
+/// Remarks differ by their words. What a backend adds to a word is another kind of the same
+/// condition if it differs in more than its numbers. Notes of a backend differ by their texts.
 Condition ofRemark(const Remark& remark) {
-  const bool own = remark.word == Word::kNothing;
+  const bool own = remark.word == Word::kNothing || isNote(remark.word);
   return {.key = remark.key + ": " +
                  (own ? withoutNumbers(remark.text) : std::string(idOf(remark.word))),
           .kind = withoutNumbers(remark.text),

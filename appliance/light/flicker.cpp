@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 namespace {
 
@@ -45,11 +47,7 @@ double backgroundLuminance(std::span<const std::byte> pixels, std::uint32_t widt
 }
 
 std::string flickerText(const FlickerReport& report) {
-  std::array<char, 80> text{};
-  (void)std::snprintf(text.data(), text.size(),
-                      "the background varies by %.1f %%, shown by %.1f %%", 100 * report.before,
-                      100 * report.after);
-  return text.data();
+  return textOf(phrase<Word::kLightEvened>(100 * report.before, 100 * report.after));
 }
 
 float FlickerCompensation::gain(std::uint32_t camera, double luminance) RT_SAFE {

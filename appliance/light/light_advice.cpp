@@ -1,31 +1,24 @@
 #include "appliance/light/light_advice.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+#include <string>
 
 namespace appliance {
 namespace {
 
 constexpr double kMainsWander_hz = 0.2;  // what European grids allow themselves every day
-constexpr double kNoBeat_hz = 0.05;      // slower than anybody looks
+constexpr double kNoBeat_hz = 0.05;      // too slow to be seen
 constexpr double kNothingKept = 0.01;
-
-std::string line(const char* format, auto... values) {
-  std::array<char, 240> text{};
-  (void)std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 double blur_mm(double exposure_us) {
   return kFastestLimb_m_s * exposure_us * 1e-3;
 }
 
+/// There is at least one.
 std::string ratesInWords(const std::vector<double>& rates) {
-  std::string words;
-  for (const double rate : rates) words += (words.empty() ? "" : " or ") + line("%.4g Hz", rate);
-  return words;
+  return textOf(rates.size() > 1 ? phrase<Word::kLightEitherRate>(rates[0], rates[1])
+                                 : phrase<Word::kLightRate>(rates[0]));
 }
 
 }  // namespace
@@ -50,35 +43,27 @@ LightAdvice adviseOnLight(const LightParameters& parameters) {
   return advice;
 }
 
-std::vector<std::string> lightLines(const LightParameters& parameters) {
+std::vector<Phrase> lightLines(const LightParameters& parameters) {
   const LightAdvice advice = adviseOnLight(parameters);
-  std::string blur = line("exposure %.4g ms: motion blur at %.0f m/s is %.0f mm",
-                          parameters.exposure_us * 1e-3, kFastestLimb_m_s, advice.blur_mm);
-  if (advice.blur_px) blur += line(" (%.1f px)", *advice.blur_px);
-  std::vector<std::string> lines{std::move(blur)};
+  const double exposure_ms = parameters.exposure_us * 1e-3;
+  std::vector<Phrase> lines;
+  lines.push_back(advice.blur_px
+                      ? phrase<Word::kLightBlurPx>(exposure_ms, kFastestLimb_m_s, advice.blur_mm,
+                                                   *advice.blur_px)
+                      : phrase<Word::kLightBlur>(exposure_ms, kFastestLimb_m_s, advice.blur_mm));
   if (advice.kept < kNothingKept) {
-    lines.push_back(line("lamps at %.4g Hz: the exposure takes whole periods, no flicker is left",
-                         advice.lamp_hz));
+    lines.push_back(phrase<Word::kLightSteady>(advice.lamp_hz));
     return lines;
   }
   const double kept_percent = 100 * advice.kept;
-  if (advice.beat_hz > kNoBeat_hz) {
-    lines.push_back(line("lamps at %.4g Hz: pictures keep %.0f %% of their flicker and beat at "
-                         "%.3g Hz; no beat at ",
-                         advice.lamp_hz, kept_percent, advice.beat_hz) +
-                    ratesInWords(advice.steady_rates));
-  } else {
-    lines.push_back(
-        line("lamps at %.4g Hz: every picture sees the same part of their flicker; the "
-             "mains wanders, up to %.1f Hz of a beat with %.0f %% of it remain",
-             advice.lamp_hz, advice.wander_hz, kept_percent));
-  }
-  lines.push_back(line("an exposure of %.4g ms would keep none", advice.even_exposure_us * 1e-3) +
-                  (advice.even_fits
-                       ? std::string(": use it")
-                       : line(" but blurs %.0f mm: use lamps on direct current or above 10 kHz, or "
-                              "display.flicker_compensation",
-                              advice.even_blur_mm)));
+  lines.push_back(
+      advice.beat_hz > kNoBeat_hz
+          ? phrase<Word::kLightBeats>(advice.lamp_hz, kept_percent, advice.beat_hz,
+                                      ratesInWords(advice.steady_rates))
+          : phrase<Word::kLightWanders>(advice.lamp_hz, advice.wander_hz, kept_percent));
+  const double even_ms = advice.even_exposure_us * 1e-3;
+  lines.push_back(advice.even_fits ? phrase<Word::kLightEvenExposure>(even_ms)
+                                   : phrase<Word::kLightEvenBlurs>(even_ms, advice.even_blur_mm));
   return lines;
 }
 

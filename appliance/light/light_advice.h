@@ -1,8 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -43,7 +44,7 @@ inline constexpr double kFastestLimb_m_s = 20;
 /// Pure. Everything in @p parameters but the scale is above 0.
 [[nodiscard]] LightAdvice adviseOnLight(const LightParameters& parameters);
 
-/// The advice for a person, a sentence a line.
-[[nodiscard]] std::vector<std::string> lightLines(const LightParameters& parameters);
+/// The advice for a person, one sentence each.
+[[nodiscard]] std::vector<Phrase> lightLines(const LightParameters& parameters);
 
 }  // namespace appliance

@@ -9,6 +9,8 @@
 
 #include <sys/epoll.h>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 namespace {
 
@@ -22,8 +24,7 @@ std::uint64_t inMicroseconds(rt::Nanoseconds time) {
 }
 
 std::unexpected<std::string> broken(int result) {
-  return std::unexpected(std::string("the event loop does not work (") + std::strerror(-result) +
-                         "): is the limit of open files too low?");
+  return std::unexpected(withId(phrase<Word::kLoopFailed>(std::strerror(-result))));
 }
 
 bool isIgnored(int signal) {
@@ -129,7 +130,7 @@ void EventLoop::handle(const Watched& watched) noexcept {
 
 EventLoop::Outcome EventLoop::turn() {
   if (const int r = sd_event_run(event_.get(), kForever); r < 0) return broken(r);
-  if (!fault_.empty()) return std::unexpected("the main thread cannot go on: " + fault_);
+  if (!fault_.empty()) return std::unexpected(withId(phrase<Word::kMainFailed>(fault_)));
   return {};
 }
 

@@ -8,6 +8,7 @@
 
 #include <sched.h>
 
+#include "appliance/words/phrase.h"
 #include "rt/periodic_loop.h"
 #include "rt/section.h"
 
@@ -99,12 +100,8 @@ std::string realTimeThrottle(const std::string& proc) {
     return {};
   }
   if (runtime_us < 0 || runtime_us >= period_us) return {};
-  char line[200];
-  std::snprintf(line, sizeof line,
-                "the kernel may hold real-time threads back for %ld ms of every %ld ms "
-                "(kernel.sched_rt_runtime_us = %ld)",
-                (period_us - runtime_us) / 1000, period_us / 1000, runtime_us);
-  return line;
+  return textOf(phrase<Word::kMachineThrottles>((period_us - runtime_us) / 1000, period_us / 1000,
+                                                runtime_us));
 }
 
 }  // namespace appliance

@@ -1,7 +1,8 @@
 #include "appliance/machine/stall_log.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 namespace {
@@ -25,13 +26,8 @@ void StallLog::take(const Stall& stall) {
 
 std::string StallLog::text(rt::Timestamp now) const {
   if (!last_) return {};
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "this PC stood still for %.0f ms %.0f s ago (firmware or host); %llu times so far, "
-                "%.0f ms at most",
-                ms(last_->length()), ms(now - last_->end) / 1e3,
-                static_cast<unsigned long long>(count_), ms(longest_));
-  return text;
+  return textOf(phrase<Word::kMachineStalled>(ms(last_->length()), ms(now - last_->end) / 1e3,
+                                              count_, ms(longest_)));
 }
 
 }  // namespace appliance

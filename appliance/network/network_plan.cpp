@@ -55,8 +55,8 @@ double packetDelay_s(const NetworkParameters& parameters, const FrameOnWire& fra
   return std::max(0.0, std::min(fair_s, longest_s));
 }
 
-/// All cameras of an uplink send at once: one packet each has to wait, and what comes faster than
-/// the uplink takes it away piles up until the frames are through.
+/// All cameras of an uplink send at the same time: one packet of each has to wait, and what arrives
+/// faster than the uplink carries it piles up until the frames have passed.
 std::uint64_t switchBuffer(const NetworkParameters& parameters, const FrameOnWire& frame,
                            double delay_s) {
   const double link_bps = parameters.camera_link_gbps * 1e9;
@@ -68,12 +68,6 @@ std::uint64_t switchBuffer(const NetworkParameters& parameters, const FrameOnWir
          static_cast<std::uint64_t>(std::ceil(piled_bits / 8));
 }
 
-std::string words(const char* format, auto... values) {
-  std::array<char, 200> text{};
-  (void)std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
-
 bool fits(const NetworkParameters& parameters) {
   return parameters.rate_hz <= highestRate_hz(parameters);
 }
@@ -82,7 +76,7 @@ std::optional<NetworkAlternative> lowerRate(NetworkParameters parameters) {
   const double wanted_hz = parameters.rate_hz;
   parameters.rate_hz = std::floor(highestRate_hz(parameters) * 10) / 10;
   if (parameters.rate_hz <= 0 || parameters.rate_hz >= wanted_hz) return std::nullopt;
-  return NetworkAlternative{words("lower the rate to %.1f Hz", parameters.rate_hz), parameters};
+  return NetworkAlternative{phrase<Word::kNetworkLowerRate>(parameters.rate_hz), parameters};
 }
 
 std::optional<NetworkAlternative> smallerHeight(NetworkParameters parameters) {
@@ -101,15 +95,14 @@ std::optional<NetworkAlternative> smallerHeight(NetworkParameters parameters) {
     (fitsAt(middle) ? fitting : too_tall) = middle;
   }
   parameters.height_px = fitting * kHeightStep_px;
-  return NetworkAlternative{words("lower the pictures' height to %u px", parameters.height_px),
-                            parameters};
+  return NetworkAlternative{phrase<Word::kNetworkLowerHeight>(parameters.height_px), parameters};
 }
 
 std::optional<NetworkAlternative> moreUplinks(NetworkParameters parameters) {
   for (++parameters.uplinks; parameters.uplinks <= std::min(kMostUplinks, parameters.cameras);
        ++parameters.uplinks) {
     if (fits(parameters))
-      return NetworkAlternative{"use " + uplinkWords(parameters) + " uplinks", parameters};
+      return NetworkAlternative{phrase<Word::kNetworkUplinks>(uplinkWords(parameters)), parameters};
   }
   return std::nullopt;
 }
@@ -119,7 +112,7 @@ std::optional<NetworkAlternative> fasterUplink(NetworkParameters parameters) {
     if (speed <= parameters.uplink_gbps) continue;
     parameters.uplink_gbps = speed;
     if (fits(parameters))
-      return NetworkAlternative{"use " + uplinkWords(parameters) + " uplinks", parameters};
+      return NetworkAlternative{phrase<Word::kNetworkUplinks>(uplinkWords(parameters)), parameters};
   }
   return std::nullopt;
 }
@@ -128,25 +121,24 @@ std::optional<NetworkAlternative> largerPackets(NetworkParameters parameters) {
   if (parameters.packet_size_bytes >= kJumboPacketBytes) return std::nullopt;
   parameters.packet_size_bytes = kJumboPacketBytes;
   if (!fits(parameters)) return std::nullopt;
-  return NetworkAlternative{words("use packets of %u bytes", kJumboPacketBytes), parameters};
+  return NetworkAlternative{phrase<Word::kNetworkPackets>(kJumboPacketBytes), parameters};
 }
 
 NetworkRefusal refusal(const NetworkParameters& parameters) {
   const double camera_gbps = frameOf(parameters).bits() * parameters.rate_hz * 1e-9;
   const double uplink_gbps = camera_gbps * camerasPerUplink(parameters);
   NetworkRefusal refused;
-  if (uplink_gbps > kLinkShare * parameters.uplink_gbps) {
-    refused.reason =
-        words("%u cameras of %ux%u at %.4g Hz need %.3g Gb/s of ", parameters.cameras,
-              parameters.width_px, parameters.height_px, parameters.rate_hz, uplink_gbps) +
-        (parameters.uplinks == 1 ? "the uplink" : "the fullest uplink") +
-        words(", %s carries %.3g", uplinkWords(parameters).c_str(),
-              kLinkShare * parameters.uplink_gbps);
-  } else {
-    refused.reason = words("a camera of %ux%u at %.4g Hz needs %.3g Gb/s, its link carries %.3g",
-                           parameters.width_px, parameters.height_px, parameters.rate_hz,
-                           camera_gbps, kLinkShare * parameters.camera_link_gbps);
-  }
+  const NetworkParameters& p = parameters;
+  const double carried_gbps = kLinkShare * p.uplink_gbps;
+  if (uplink_gbps <= carried_gbps)
+    refused.reason = phrase<Word::kNetworkCamera>(p.width_px, p.height_px, p.rate_hz, camera_gbps,
+                                                  kLinkShare * p.camera_link_gbps);
+  else if (p.uplinks == 1)
+    refused.reason = phrase<Word::kNetworkUplink>(p.cameras, p.width_px, p.height_px, p.rate_hz,
+                                                  uplink_gbps, uplinkWords(p), carried_gbps);
+  else
+    refused.reason = phrase<Word::kNetworkFullest>(p.cameras, p.width_px, p.height_px, p.rate_hz,
+                                                   uplink_gbps, uplinkWords(p), carried_gbps);
   for (const auto& way : {lowerRate, smallerHeight, moreUplinks, fasterUplink, largerPackets}) {
     if (auto found = way(parameters)) refused.alternatives.push_back(std::move(*found));
   }
@@ -194,13 +186,16 @@ std::expected<NetworkPlan, NetworkRefusal> planNetwork(const NetworkParameters& 
 }
 
 std::string uplinkWords(const NetworkParameters& parameters) {
-  return words("%u x %.4g Gb/s", parameters.uplinks, parameters.uplink_gbps);
+  std::array<char, 48> text{};
+  (void)std::snprintf(text.data(), text.size(), "%u x %.4g Gb/s", parameters.uplinks,
+                      parameters.uplink_gbps);
+  return text.data();
 }
 
 std::string NetworkRefusal::line() const {
-  std::string text = reason;
+  std::string text = textOf(reason);
   for (std::size_t i = 0; i < alternatives.size(); ++i) {
-    text += (i == 0 ? ": " : ", or ") + alternatives[i].words;
+    text += (i == 0 ? ": " : ", or ") + textOf(alternatives[i].change);
   }
   return text;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "appliance/words/phrase.h"
 #include "rt/clock.h"
 
 namespace appliance {
@@ -57,12 +58,12 @@ struct NetworkPlan {
 
 /// A change of refused parameters that makes them possible.
 struct NetworkAlternative {
-  std::string words;  ///< "lower the rate to 44.9 Hz"
+  Phrase change;  ///< "lower the rate to 44.9 Hz"
   NetworkParameters parameters;
 };
 
 struct NetworkRefusal {
-  std::string reason;  ///< "20 cameras at 60 Hz need 12.7 Gb/s, ..."
+  Phrase reason;  ///< "20 cameras at 60 Hz need 12.7 Gb/s, ..."
   std::vector<NetworkAlternative> alternatives;
 
   /// Reason and alternatives as one line.

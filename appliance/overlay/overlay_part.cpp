@@ -28,8 +28,8 @@ class OverlayPart final : public Part {
   void stop() override { thread_.stop(); }
 
   void report(Status& status) const override {
-    if (std::string warning = loop_.warning(); !warning.empty())
-      status.degraded.push_back({"overlay", std::move(warning)});
+    if (const std::string warning = loop_.warning(); !warning.empty())
+      status.degraded.push_back(remarkOf("overlay", phrase<Word::kOverlayNote>(warning)));
   }
 
  private:

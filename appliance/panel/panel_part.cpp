@@ -53,7 +53,7 @@ MadePart makePanelPart(const Shared& shared) {
   if (config.backend == "none") return nullptr;
   std::vector<std::string> notes;
   auto panel = hal::openButtonPanel(config.backend, config.device, notes);
-  for (std::string& note : notes) shared.remarks.add("panel", std::move(note));
+  for (const std::string& note : notes) shared.remarks.add("panel", phrase<Word::kPanelNote>(note));
   if (!panel) {
     shared.remarks.add("panel", phrase<Word::kPanelMissing>(panel.error()));
     return nullptr;

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "appliance/words/phrase.h"
+
 namespace appliance {
 namespace {
 
@@ -20,8 +22,7 @@ std::expected<std::unique_ptr<PictureRecorder>, std::string> PictureRecorder::cr
   std::error_code error;
   std::filesystem::create_directories(config.directory, error);
   if (error) {
-    return std::unexpected("record.directory = \"" + config.directory + "\": " + error.message() +
-                           ": give a folder that can be written");
+    return std::unexpected(withId(phrase<Word::kRecordFolder>(config.directory, error.message())));
   }
   auto recorder = ui::Recorder::create({.folder = config.directory,
                                         .video_width_px = config.video_width_px,
@@ -75,13 +76,13 @@ std::expected<void, std::string> PictureRecorder::finish() {
   if (!cost) return std::unexpected(cost.error());
   const std::string path = folder_ + "/recorder.json";
   std::FILE* file = std::fopen(path.c_str(), "we");
-  if (file == nullptr) return std::unexpected(path + ": cannot be written");
+  if (file == nullptr) return std::unexpected(withId(phrase<Word::kRecordFile>(path)));
   std::fprintf(file,
                "{\"frames\": %lu, \"dropped\": %lu, \"render_thread_s\": %.6f, "
                "\"writer_cpu_s\": %.6f}\n",
                cost->frames, cost->dropped, static_cast<double>(cost->render_thread_ns) * 1e-9,
                static_cast<double>(cost->writer_cpu_ns) * 1e-9);
-  if (std::fclose(file) != 0) return std::unexpected(path + ": cannot be written");
+  if (std::fclose(file) != 0) return std::unexpected(withId(phrase<Word::kRecordFile>(path)));
   return {};
 }
 

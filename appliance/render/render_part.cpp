@@ -11,6 +11,7 @@
 #include "appliance/metrics/rate_meter.h"
 #include "appliance/render/history_views.h"
 #include "appliance/render/render_loop.h"
+#include "appliance/status/screen_text.h"
 #include "rt/ringed_thread.h"
 
 namespace appliance {
@@ -96,7 +97,9 @@ class RenderPart final : public Part {
     status.renderer = renderer_;
     status.source_path = source_path_;
     status.screen = render.screen.state;
-    status.screen_message = render.screen.message.data();
+    const Phrase screen = screenPhrase(render.screen);
+    status.screen_message = textOf(screen);
+    status.screen_word = screen.word;
     reportViews(render, status);
     if (shared_.config.display.flicker_compensation)
       status.sections.push_back({.key = "light", .line = flickerText(render.flicker)});
@@ -111,13 +114,12 @@ class RenderPart final : public Part {
  private:
   void reportViews(const RenderStatus& render, Status& status) const {
     const RigPin rig = shared_.rigs.newest();
-    if (std::string warning = coverWarning(*rig, render.cover_worst, render.cover_needed);
+    if (const Phrase warning = coverWarning(*rig, render.cover_worst, render.cover_needed);
         !warning.empty())
-      status.degraded.push_back({.key = "picture", .text = std::move(warning)});
+      status.degraded.push_back(remarkOf("picture", warning));
     for (std::size_t i = 0; i < rig->cameras.size(); ++i) {
       if ((render.blind >> i & 1U) == 0) continue;
-      status.degraded.push_back(
-          {.key = "view " + std::to_string(i + 1), .text = blindLine(*rig, i)});
+      status.degraded.push_back(remarkOf("view " + std::to_string(i + 1), blindWarning(*rig, i)));
     }
   }
 

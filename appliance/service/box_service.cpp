@@ -6,6 +6,7 @@
 #include <systemd/sd-daemon.h>
 
 #include "appliance/journal/log.h"
+#include "appliance/words/phrase.h"
 #include "rt/printable.h"
 
 namespace appliance {
@@ -68,21 +69,22 @@ Condition BoxService::controlCondition() const {
           .kind = trouble,
           .now = now,
           .text = trouble,
-          .end = "control interface: " + control_->title()};
+          .end = textOf(phrase<Word::kControlServes>(control_->title())),
+          .word = Word::kControlMissing,
+          .end_word = Word::kControlServes};
 }
 
 std::string serviceText(const Status& status) {
   const auto in_trouble = std::ranges::count_if(status.cameras, [](const CameraStatus& camera) {
     return camera.trouble != CameraTrouble::kNone;
   });
-  std::string text = std::string(nameOf(status.mode)) + ", view " +
-                     std::to_string(status.view_wanted + 1) + " of " +
-                     std::to_string(status.cameras.size());
-  if (in_trouble > 0) text += "; cameras in trouble: " + std::to_string(in_trouble);
+  std::string text = textOf(phrase<Word::kServiceView>(nameOf(status.mode), status.view_wanted + 1,
+                                                       status.cameras.size()));
+  if (in_trouble > 0) text += "; " + textOf(phrase<Word::kServiceTroubles>(in_trouble));
   if (status.screen != hal::ScreenState::kShowing)
-    text += "; screen: " + std::string(nameOf(status.screen));
+    text += "; " + textOf(phrase<Word::kScreenState>(nameOf(status.screen)));
   if (!status.degraded.empty())
-    text += "; less than configured: " + std::to_string(status.degraded.size());
+    text += "; " + textOf(phrase<Word::kServiceDegraded>(status.degraded.size()));
   return rt::printable(text);
 }
 

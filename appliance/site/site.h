@@ -6,6 +6,7 @@
 
 #include "appliance/config/config.h"
 #include "appliance/geometry/rig.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -14,7 +15,7 @@ namespace appliance {
 struct Site {
   Config config;
   Rig rig;
-  std::vector<std::string> degraded;  ///< what is already known to be less than configured
+  std::vector<Phrase> degraded;  ///< what is already known to be less than configured
 };
 
 /// @p overrides: as in loadConfig(). @p target_m: instead of the rig's; empty: the rig's.

@@ -1,9 +1,9 @@
 #include "appliance/site/site_plan.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -25,16 +25,13 @@ NetworkParameters networkParameters(const Config& config, const Rig& rig) {
 std::expected<FittedSite, std::string> fitToNetwork(Config config, const Rig& rig) {
   NetworkParameters parameters = networkParameters(config, rig);
   auto plan = planNetwork(parameters);
-  std::string lowered;
+  Phrase lowered;
   if (!plan) {
     const std::string refusal = plan.error().line();
     parameters.rate_hz = std::floor(highestRate_hz(parameters) * 10) / 10;
-    if (parameters.rate_hz < kLowestRate_hz) return std::unexpected("network: " + refusal);
-    std::array<char, 96> text{};
-    (void)std::snprintf(text.data(), text.size(),
-                        "trigger: runs at %.1f Hz instead of %.4g: ", parameters.rate_hz,
-                        config.trigger.rate_hz);
-    lowered = text.data() + refusal;
+    if (parameters.rate_hz < kLowestRate_hz)
+      return std::unexpected(withId(phrase<Word::kNetworkRefused>(refusal)));
+    lowered = phrase<Word::kTriggerLowered>(parameters.rate_hz, config.trigger.rate_hz, refusal);
     config.trigger.rate_hz = parameters.rate_hz;
     plan = planNetwork(parameters);
   }
@@ -42,7 +39,7 @@ std::expected<FittedSite, std::string> fitToNetwork(Config config, const Rig& ri
     config.cameras.packet_delay_ns =
         static_cast<std::int32_t>(std::min<std::int64_t>(plan->packet_delay.count(), 1'000'000));
   }
-  return FittedSite{std::move(config), std::move(lowered)};
+  return FittedSite{std::move(config), lowered};
 }
 
 }  // namespace appliance

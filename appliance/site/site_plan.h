@@ -6,6 +6,7 @@
 #include "appliance/config/config.h"
 #include "appliance/geometry/rig.h"
 #include "appliance/network/network_plan.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -15,7 +16,7 @@ namespace appliance {
 /// The site as its network can carry it.
 struct FittedSite {
   Config config;
-  std::string lowered;  ///< one line: why the trigger's rate is not as asked; empty: it is
+  Phrase lowered;  ///< why the trigger's rate is lower than configured; empty: it is not
 };
 
 /// Fills in an automatic packet delay. A rate that no link carries is lowered to the highest one

@@ -66,7 +66,10 @@ std::string toJson(const Status& status) {
       {"sections", nlohmann::ordered_json::object()},
       {"degraded", nlohmann::ordered_json::array()},
       {"renderer", status.renderer},
-      {"screen", {{"state", nameOf(status.screen)}, {"message", status.screen_message}}},
+      {"screen",
+       {{"state", nameOf(status.screen)},
+        {"message", status.screen_message},
+        {"message_id", idOf(status.screen_word)}}},
       {"source_path", status.source_path},
   };
   for (const CameraStatus& camera : status.cameras) {

@@ -17,7 +17,7 @@
 
 namespace appliance {
 
-/// The running daemon in one look. Views count from 0 here, from 1 for people and on the bus.
+/// One snapshot of the running daemon. Views count from 0 here, from 1 for people and on the bus.
 /// Texts are UTF-8: D-Bus refuses others.
 struct Status {
   Mode mode = Mode::kLive;
@@ -37,12 +37,14 @@ struct Status {
   std::vector<CameraStatus> cameras;
   GenlockStatus genlock;
   std::string genlock_text;             ///< the same in one line
+  Word genlock_word = Word::kNothing;   ///< what the line says first
   std::vector<Remark> degraded;         ///< one per thing that is less than configured
   std::vector<StatusSection> sections;  ///< of the parts that are not in every box
   std::string renderer;
   hal::ScreenState screen = hal::ScreenState::kShowing;
   std::string screen_message;  ///< why nothing or less is shown, and what to do; may be empty
-  std::string source_path;     ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
+  Word screen_word = Word::kNothing;  ///< what the message says
+  std::string source_path;  ///< how frames reach the renderer: "dma-buf" or "upload: <why>"
 };
 
 [[nodiscard]] std::string_view nameOf(hal::ScreenState state);
@@ -55,7 +57,7 @@ struct Status {
 /// line and its values, named after its key.
 [[nodiscard]] std::string toJson(const Status& status);
 
-/// Where the control interface looks.
+/// What the control interface shows.
 ///
 /// Threads  status(): the thread that serves the control interface.
 class StatusSource {
@@ -66,27 +68,27 @@ class StatusSource {
   [[nodiscard]] virtual std::string metrics() const = 0;
 };
 
-/// Where the control interface puts what was asked for; everything given is valid.
+/// Takes the requests of the control interface, which has checked them.
 ///
 /// Threads  The thread that serves the control interface.
-/// Errors   false, or no id: not taken, because too much waits already.
+/// Errors   false, or no id: refused because too many requests wait already.
 class ControlSink {
  public:
   virtual ~ControlSink() = default;
-  /// Each command that was taken has one answer with this id.
+  /// Each command that was accepted gets one answer with this id.
   [[nodiscard]] virtual std::optional<CommandId> command(const Command& command) = 0;
   [[nodiscard]] virtual std::optional<CommandAnswer> nextAnswer() = 0;
   /// Readable while answers wait.
   [[nodiscard]] virtual int answersFd() const = 0;
   /// Rig frame, metres; finite.
   [[nodiscard]] virtual bool setTarget(const std::array<double, 3>& target_m) = 0;
-  /// What was measured counts again, from the shown moment on.
+  /// From the shown moment on, the measured target is used again.
   virtual void releaseTarget() = 0;
   /// From the next picture on, the rig of a rig file's @p text is used; @p name stands for the file
-  /// in messages. Gives what was ignored in it, one line each; or one line why it is not taken.
-  [[nodiscard]] virtual std::expected<std::vector<std::string>, std::string> loadRig(
+  /// in messages. Returns what was ignored in it, one line each; or why the rig is refused.
+  [[nodiscard]] virtual std::expected<std::vector<std::string>, Phrase> loadRig(
       const std::string& text, const std::string& name) = 0;
-  /// True: another program may show something; false: the screen is ours again.
+  /// True: another program may use the screen; false: the box takes it back.
   virtual void setScreenReleased(bool released) = 0;
 };
 

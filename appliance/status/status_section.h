@@ -15,7 +15,7 @@ namespace appliance {
 struct Remark {
   std::string key;             ///< who it is about, the same while it lasts: "panel", "camera 7"
   std::string text;            ///< what is wrong and what to do
-  Word word = Word::kNothing;  ///< what the text says; kNothing: in a backend's own words
+  Word word = Word::kNothing;  ///< what the text says
 
   friend bool operator==(const Remark&, const Remark&) = default;
 };

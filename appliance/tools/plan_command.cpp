@@ -84,10 +84,11 @@ void printPlan(const NetworkParameters& network, const NetworkPlan& plan) {
 }
 
 void printRefusal(const NetworkParameters& network, const NetworkRefusal& refusal) {
-  std::printf("%-14s impossible: %s\n", uplinkWords(network).c_str(), refusal.reason.c_str());
+  std::printf("%-14s impossible: %s\n", uplinkWords(network).c_str(),
+              textOf(refusal.reason).c_str());
   const char* lead = "possible:";
   for (const NetworkAlternative& alternative : refusal.alternatives) {
-    std::printf("%-14s   %-9s %s\n", "", lead, alternative.words.c_str());
+    std::printf("%-14s   %-9s %s\n", "", lead, textOf(alternative.change).c_str());
     lead = "or:";
   }
 }
@@ -138,7 +139,7 @@ void plan(const Options& options) {
     if (!options.uplinks.empty() || uplinks == configured) possible = possible && fits;
   }
   std::printf("\n");
-  for (const std::string& line : lightLines(site.light)) std::printf("%s\n", line.c_str());
+  for (const Phrase& line : lightLines(site.light)) std::printf("%s\n", textOf(line).c_str());
   if (!site.picture.empty()) std::printf("\n");
   for (const std::string& line : site.picture) std::printf("%s\n", line.c_str());
   if (judged && !possible) throw CommandFailed();

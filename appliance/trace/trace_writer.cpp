@@ -9,6 +9,7 @@
 #include <pthread.h>
 
 #include "appliance/trace/trace_file.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr std::chrono::milliseconds kDrainEvery{100};  // a twentieth of what a ring holds
 
 std::string describe(const std::string& path, int error) {
-  return path + ": cannot write the trace: " + std::strerror(error);
+  return withId(phrase<Word::kTraceFile>(path, std::strerror(error)));
 }
 
 }  // namespace

@@ -9,18 +9,36 @@
 
 namespace appliance::words {
 
-/// A placeholder of a pattern: {name}, {name:d}, {name:g} or {name:.2}.
+/// A placeholder of a pattern: {name}, {name:d}, {name:g}, {name:g4} or {name:.2}.
 struct Placeholder {
   enum class Kind : std::uint8_t { kText, kWhole, kShortest, kDecimals };
 
   std::string_view name;
   Kind kind = Kind::kText;
-  int decimals = 0;  ///< of kDecimals
+  int digits = 0;  ///< kDecimals: after the point; kShortest: in all
 
   [[nodiscard]] constexpr bool isText() const { return kind == Kind::kText; }
 };
 
-inline constexpr std::size_t kMostArguments = 4;
+inline constexpr std::size_t kMostArguments = 8;
+inline constexpr int kShortestDigits = 6;  ///< of {name:g}
+
+/// Reads the format of a placeholder, "d" or ".2". False if there is no such format.
+constexpr bool readFormat(std::string_view format, Placeholder& to) {
+  const bool has_digit = format.size() == 2 && format[1] >= '1' && format[1] <= '9';
+  if (format == "d") {
+    to.kind = Placeholder::Kind::kWhole;
+  } else if (format == "g") {
+    to.kind = Placeholder::Kind::kShortest;
+    to.digits = kShortestDigits;
+  } else if (has_digit && (format[0] == '.' || format[0] == 'g')) {
+    to.kind = format[0] == '.' ? Placeholder::Kind::kDecimals : Placeholder::Kind::kShortest;
+    to.digits = format[1] - '0';
+  } else {
+    return false;
+  }
+  return true;
+}
 
 /// The arguments of a pattern, each name once, in the order in which they first appear.
 struct Arguments {
@@ -57,17 +75,7 @@ constexpr std::optional<Piece> takePiece(std::string_view& rest) {
   Placeholder found{.name = inside.substr(0, colon)};
   if (found.name.empty()) return std::nullopt;
   if (colon == inside.size()) return Piece{.literal = {}, .placeholder = found};
-  const std::string_view format = inside.substr(colon + 1);
-  if (format == "d") {
-    found.kind = Placeholder::Kind::kWhole;
-  } else if (format == "g") {
-    found.kind = Placeholder::Kind::kShortest;
-  } else if (format.size() == 2 && format[0] == '.' && format[1] >= '1' && format[1] <= '9') {
-    found.kind = Placeholder::Kind::kDecimals;
-    found.decimals = format[1] - '0';
-  } else {
-    return std::nullopt;
-  }
+  if (!readFormat(inside.substr(colon + 1), found)) return std::nullopt;
   return Piece{.literal = {}, .placeholder = found};
 }
 

@@ -40,8 +40,8 @@ std::string_view textArgument(const Phrase& phrase, std::size_t index) {
 std::string numberText(double number, const words::Placeholder& how) {
   std::array<char, 48> text{};
   const int length = how.kind == words::Placeholder::Kind::kShortest
-                         ? std::snprintf(text.data(), text.size(), "%.6g", number)
-                         : std::snprintf(text.data(), text.size(), "%.*f", how.decimals, number);
+                         ? std::snprintf(text.data(), text.size(), "%.*g", how.digits, number)
+                         : std::snprintf(text.data(), text.size(), "%.*f", how.digits, number);
   const auto used = static_cast<std::size_t>(length);
   return {text.data(), std::min(used, text.size() - 1)};
 }
@@ -55,6 +55,15 @@ std::string_view idOf(Word word) {
 
 std::string textOf(const Phrase& phrase) {
   return words::formatted(englishOf(phrase.word), phrase);
+}
+
+std::string withId(Word word, const std::string& text) {
+  if (word == Word::kNothing || text.starts_with('[')) return text;
+  return "[" + std::string(idOf(word)) + "] " + text;
+}
+
+std::string withId(const Phrase& phrase) {
+  return withId(phrase.word, textOf(phrase));
 }
 
 namespace words {

@@ -13,8 +13,8 @@
 
 namespace appliance {
 
-/// What is to be said, in no language yet: a word and its arguments. Trivially copyable, so it
-/// may cross threads; text is made where a person reads it.
+/// What a person shall read, in no language yet: a word and its arguments. Trivially copyable, so
+/// that it may cross threads. The text is made where a person reads it.
 ///
 /// Memory  Fixed size. Text that does not fit is cut between two characters of UTF-8.
 struct Phrase {
@@ -24,7 +24,7 @@ struct Phrase {
   std::array<double, words::kMostArguments> numbers{};
   std::array<char, kTextBytes> texts{};  ///< one after the other, each with its zero
 
-  /// Nothing is to be said.
+  /// There is nothing to say.
   [[nodiscard]] bool empty() const { return word == Word::kNothing; }
   friend bool operator==(const Phrase&, const Phrase&) = default;
 };
@@ -87,6 +87,13 @@ template <Word kWord, class... Given>
 
 /// The phrase in English, for status, journal and screen.
 [[nodiscard]] std::string textOf(const Phrase& phrase);
+
+/// "[history-too-large] the history of 240 sets takes ...": a line of the journal, or an error that
+/// becomes one.
+[[nodiscard]] std::string withId(const Phrase& phrase);
+
+/// The same for a @p text of another origin, such as a backend's. One that carries an id keeps it.
+[[nodiscard]] std::string withId(Word word, const std::string& text);
 
 namespace words {
 

@@ -33,6 +33,17 @@ inline constexpr auto kTable = std::to_array<Definition>({
   return words::kTable[static_cast<std::size_t>(word)].english;
 }
 
+/// "CameraSilent": for names on D-Bus.
+[[nodiscard]] constexpr std::string_view nameOf(Word word) {
+  return words::kTable[static_cast<std::size_t>(word)].identifier.substr(1);
+}
+
+/// Whether it is a remark in a backend's own words, "{note}": several may hold at the same time,
+/// and only their texts tell them apart.
+[[nodiscard]] constexpr bool isNote(Word word) {
+  return englishOf(word) == "{note}";
+}
+
 /// "camera-silent": the same in every language, for journals and programs.
 [[nodiscard]] std::string_view idOf(Word word);
 

@@ -264,7 +264,7 @@ TEST_F(ControlInterface, IsThereAgainAfterTheBusWasGone) {
   const std::string address = bus_.address();
   bus_.stop();
   ASSERT_TRUE(daemon_->waitForTrouble());
-  EXPECT_THAT(daemon_->trouble(), HasSubstr("no control interface: lost the bus"));
+  EXPECT_THAT(daemon_->trouble(), HasSubstr("no control interface, lost the bus"));
   EXPECT_EQ(box_.status().screen, hal::ScreenState::kShowing) << "its holder is gone, too";
 
   const test::PrivateBus again(address);

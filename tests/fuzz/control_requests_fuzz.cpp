@@ -10,7 +10,7 @@ using appliance::Requested;
 
 void check(const Requested& requested, const appliance::Status& now) {
   if (!requested) {
-    fuzz::requireOneLine(requested.error());
+    fuzz::requireOneLine(textOf(requested.error()));
     return;
   }
   using enum appliance::Command::Kind;
@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (double& coordinate : target_m)
     coordinate = std::bit_cast<double>(bytes.number<std::uint64_t>());
   const auto target = appliance::requestTarget(target_m[0], target_m[1], target_m[2]);
-  if (!target) fuzz::requireOneLine(target.error());
+  if (!target) fuzz::requireOneLine(textOf(target.error()));
   for (const double coordinate : target.value_or(std::array<double, 3>{}))
     fuzz::require(std::isfinite(coordinate), "a target is finite");
   const auto mode = bytes.take(size);

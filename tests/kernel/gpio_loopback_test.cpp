@@ -70,9 +70,9 @@ TEST_F(LoopbackOnAChip, FindsAnInverterThatTheSettingsDoNotKnow) {
 
 TEST_F(LoopbackOnAChip, FindsAMissingWire) {
   open();
-  EXPECT_THAT(check(), HasSubstr("no edge came back: the loop-back stays inactive"));
+  EXPECT_THAT(check(), HasSubstr("no edge came back, the loop-back stays inactive"));
   chip.pull("BACK", true);
-  EXPECT_THAT(check(), HasSubstr("no edge came back: the loop-back stays active"));
+  EXPECT_THAT(check(), HasSubstr("no edge came back, the loop-back stays active"));
 }
 
 TEST_F(LoopbackOnAChip, StampsEveryEdgeOfATrainWithinItsOwnTime) {

@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <xf86drm.h>
 
+#include "appliance/status/screen_text.h"
 #include "tests/kernel/support/kms_viewer.h"
 #include "tests/kernel/support/other_screen.h"
 #include "tests/kernel/support/vkms.h"
@@ -28,7 +29,7 @@ const std::string kCard = "/dev/dri/card0";
 constexpr int kTimes = 20;
 
 std::string messageOf(const ui::KmsDisplay& display) {
-  return display.screen().message.data();
+  return textOf(appliance::screenPhrase(display.screen()));
 }
 
 /// Another program with the same card.

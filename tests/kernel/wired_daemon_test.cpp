@@ -144,7 +144,7 @@ TEST_F(WiredDaemon, RunsOnWithWrongPolarityAndSaysSo) {
   start({"trigger.loopback_active_low=true"});
   if (HasFatalFailure()) return;
   std::this_thread::sleep_for(1s);
-  EXPECT_THAT(daemon_->output(), HasSubstr("trigger: polarity wrong"));
+  EXPECT_THAT(daemon_->output(), HasSubstr("trigger polarity wrong"));
   auto records = stop();
   EXPECT_GT(records["frame"].size(), 10U);
   EXPECT_TRUE(records["loopback"].empty());
@@ -154,7 +154,7 @@ TEST_F(WiredDaemon, RunsOnWithoutLoopbackWireAndPanel) {
   start({"panel.button_prefix=key-"}, false);
   if (HasFatalFailure()) return;
   std::this_thread::sleep_for(1s);
-  EXPECT_THAT(daemon_->output(), HasSubstr("trigger: no edge came back"));
+  EXPECT_THAT(daemon_->output(), HasSubstr("no edge came back"));
   EXPECT_THAT(daemon_->output(), HasSubstr("no GPIO line is named \"key-live\""));
   EXPECT_THAT(daemon_->output(), HasSubstr("the box runs without its panel"));
   EXPECT_GT(stop()["frame"].size(), 10U);

@@ -164,7 +164,7 @@ TEST(FrameReaders, OneThatHoldsItsPinsForeverCostsOnlyItself) {
   EXPECT_EQ(other.access->report().refused, 0U);
   const auto remarks = box.history->remarks();
   ASSERT_EQ(remarks.size(), 1U);
-  EXPECT_THAT(remarks[0], testing::HasSubstr("2 frames per camera"));
+  EXPECT_THAT(textOf(remarks[0]), testing::HasSubstr("2 frames per camera"));
 }
 
 TEST(FrameReaders, AreRefusedBeyondTheReserveOfTheHistory) {

@@ -49,10 +49,11 @@ class Box : public appliance::ControlSink, public appliance::StatusSource {
     target_m_ = {0, 0, 1};
   }
   /// Takes a text that begins with "format" and ignores its second line.
-  [[nodiscard]] std::expected<std::vector<std::string>, std::string> loadRig(
+  [[nodiscard]] std::expected<std::vector<std::string>, appliance::Phrase> loadRig(
       const std::string& text, const std::string& name) override {
     const std::scoped_lock lock(mutex_);
-    if (!text.starts_with("format")) return std::unexpected(name + ":1: no rig");
+    if (!text.starts_with("format"))
+      return std::unexpected(appliance::phrase<appliance::Word::kRigRefused>(name + ":1: no rig"));
     rig_text_ = text;
     return std::vector<std::string>{name + ":2: ignored"};
   }

@@ -92,7 +92,7 @@ TEST(Box, DoesNotStartIfAPartCannotBeMadeAndSaysWhyInOneLine) {
 TEST(Box, SaysWhatTheSiteAlreadyKnewToBeLessThanConfigured) {
   NoDisplay display;
   Site site = smallSite();
-  site.degraded = {"trigger: runs at 30.0 Hz instead of 40"};
+  site.degraded = {appliance::phrase<appliance::Word::kConfigNote>("30.0 Hz instead of 40")};
   auto box = Box::start(site, {.display = display, .parts = {}});
   ASSERT_TRUE(box.has_value()) << box.error();
   EXPECT_THAT((*box)->status().degraded,

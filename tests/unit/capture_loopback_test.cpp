@@ -30,9 +30,9 @@ TEST(Loopback, TellsWrongPolarityFromAMissingWire) {
     EXPECT_THAT(faultOf({.before = true, .during = false, .after = true, .edge = edge}),
                 HasSubstr("polarity wrong"));
     EXPECT_THAT(faultOf({.before = false, .during = false, .after = false, .edge = edge}),
-                HasSubstr("no edge came back: the loop-back stays inactive"));
+                HasSubstr("no edge came back, the loop-back stays inactive"));
     EXPECT_THAT(faultOf({.before = true, .during = true, .after = true, .edge = edge}),
-                HasSubstr("no edge came back: the loop-back stays active"));
+                HasSubstr("no edge came back, the loop-back stays active"));
     EXPECT_THAT(faultOf({.before = false, .during = true, .after = true, .edge = edge}),
                 HasSubstr("changed once and stayed so"));
   }

@@ -149,10 +149,10 @@ TEST(DepthBoard, WakesEachReaderThatWaits) {
 TEST(DepthBoard, RefusesReadersBeyondItsMemory) {
   DepthBoard board;
   EXPECT_THAT(board.openReader("greedy", DepthBoard::kMostPins + 1).error(),
-              HasSubstr("greedy asks for 17 pins, 16 are left"));
+              HasSubstr("greedy asks the depth board for 17 pins, 16 are left"));
   for (std::size_t i = 0; i < DepthBoard::kMostReaders; ++i)
     (void)readerOf(board, "reader" + std::to_string(i), 2);
-  EXPECT_THAT(board.openReader("late", 0).error(), HasSubstr("no room for the reader late"));
+  EXPECT_THAT(board.openReader("late", 0).error(), HasSubstr("no room for reader late"));
 }
 
 /// A reader's thread for as long as the sensor runs: takes pictures in its own way and keeps the

@@ -71,7 +71,7 @@ TEST(RigShelf, RefusesWhileReadersHoldEverySlotAndGoesOnAfterwards) {
   ASSERT_TRUE(shelf.put(rigOf(100)));  // the last free slot
   const auto refused = shelf.put(rigOf(101));
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error(), HasSubstr("in use"));
+  EXPECT_THAT(textOf(refused.error()), HasSubstr("in use"));
   EXPECT_TRUE(isOne(*shelf.newest(), 100));
   pins.clear();
   EXPECT_TRUE(shelf.put(rigOf(102)));
@@ -80,19 +80,20 @@ TEST(RigShelf, RefusesWhileReadersHoldEverySlotAndGoesOnAfterwards) {
 
 TEST(RigShelf, RefusesARigThatDoesNotFitTheRunningCameras) {
   RigShelf shelf(rigOf(1));
-  EXPECT_THAT(shelf.put(rigOf(2, 19)).error(),
-              "this rig has 19 cameras, 20 are running: restart kagamid with this rig");
+  EXPECT_EQ(textOf(shelf.put(rigOf(2, 19)).error()),
+            "this rig has 19 cameras, 20 are running: restart kagamid with this rig");
   Rig renamed = rigOf(2);
   std::swap(renamed.cameras[3].name, renamed.cameras[4].name);
-  EXPECT_THAT(shelf.put(renamed).error(),
+  EXPECT_THAT(textOf(shelf.put(renamed).error()),
               HasSubstr("camera 4 is called \"cam5\" in this rig and \"cam4\" in the running one"));
   Rig smaller = rigOf(2);
   smaller.cameras[19].height_px = 720;
-  EXPECT_THAT(shelf.put(smaller).error(),
+  EXPECT_THAT(textOf(shelf.put(smaller).error()),
               HasSubstr("camera 20 sends 1280x1024 pixels, this rig says 1280x720"));
   Rig grey = rigOf(2);
   grey.cameras[0].pixel_format = hal::PixelFormat::kMono8;
-  EXPECT_THAT(shelf.put(grey).error(), HasSubstr("camera 1 sends BayerRG8, this rig says Mono8"));
+  EXPECT_THAT(textOf(shelf.put(grey).error()),
+              HasSubstr("camera 1 sends BayerRG8, this rig says Mono8"));
   EXPECT_TRUE(isOne(*shelf.newest(), 1));
   EXPECT_EQ(shelf.revision(), 1u);
 }

@@ -87,11 +87,11 @@ TEST_F(Views, KnowWhichCameraDoesNotHaveTheTargetInItsPicture) {
 
 TEST(CoverageText, NamesTheCameraThatNeedsTooMuch) {
   const Rig rig = rigOf();
-  EXPECT_EQ(coverWarning(rig, 1, 3.9), "");
-  EXPECT_EQ(coverWarning(rig, 1, 6.25),
-            "picture: camera 2 (right) would need zoom 6.2 to fill the screen, 4.0 is used: aim it "
+  EXPECT_TRUE(coverWarning(rig, 1, 3.9).empty());
+  EXPECT_EQ(textOf(coverWarning(rig, 1, 6.25)),
+            "camera 2 (right) would need zoom 6.2 to fill the screen, 4.0 is used: aim it "
             "at the target, or make the rig's target_volume smaller");
-  EXPECT_THAT(blindLine(rig, 0), HasSubstr("camera 1 (left) does not have the target"));
+  EXPECT_THAT(textOf(blindWarning(rig, 0)), HasSubstr("camera 1 (left) does not have the target"));
 }
 
 TEST(CoverageText, SaysZoomAndWhatEachCameraNeeds) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -72,17 +74,22 @@ TEST(LightAdvice, WeighsTheEvenExposureAgainstItsBlur) {
   EXPECT_FALSE(advice.even_fits);
 }
 
+std::vector<std::string> linesOf(const appliance::LightParameters& parameters) {
+  std::vector<std::string> lines;
+  for (const auto& line : lightLines(parameters)) lines.push_back(textOf(line));
+  return lines;
+}
+
 TEST(LightAdvice, SpeaksInPlainWords) {
   EXPECT_THAT(
-      lightLines({.scale_px_m = 295}),
+      linesOf({.scale_px_m = 295}),
       ElementsAre("exposure 1 ms: motion blur at 20 m/s is 20 mm (5.9 px)",
                   "lamps at 100 Hz: pictures keep 98 % of their flicker and beat at 20 Hz; no beat "
                   "at 50 Hz or 33.33 Hz",
                   "an exposure of 10 ms would keep none but blurs 200 mm: use lamps on direct "
                   "current or above 10 kHz, or display.flicker_compensation"));
-  EXPECT_THAT(lightLines({.rate_hz = 50})[1], HasSubstr("sees the same part"));
-  EXPECT_THAT(lightLines({.rate_hz = 40, .exposure_us = 20000})[1],
-              HasSubstr("no flicker is left"));
+  EXPECT_THAT(linesOf({.rate_hz = 50})[1], HasSubstr("sees the same part"));
+  EXPECT_THAT(linesOf({.rate_hz = 40, .exposure_us = 20000})[1], HasSubstr("no flicker is left"));
 }
 
 }  // namespace

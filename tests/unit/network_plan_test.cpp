@@ -80,7 +80,7 @@ TEST(NetworkPlan, LetsAFrameLeaveBeforeTheNextOneIsDue) {
 TEST(NetworkPlan, RefusesInPlainWordsAndNamesWhatIsPossible) {
   const auto plan = planNetwork({.rate_hz = 60, .uplinks = 1});
   ASSERT_FALSE(plan);
-  EXPECT_EQ(plan.error().reason,
+  EXPECT_EQ(textOf(plan.error().reason),
             "20 cameras of 1280x1024 at 60 Hz need 12.7 Gb/s of the uplink, "
             "1 x 10 Gb/s carries 9.5");
   EXPECT_THAT(plan.error().line(),
@@ -97,7 +97,7 @@ TEST(NetworkPlan, OffersLargerPacketsWhereTheyAreEnough) {
 TEST(NetworkPlan, NamesACameraThatItsOwnLinkCannotCarry) {
   const auto plan = planNetwork({.rate_hz = 40, .uplink_gbps = 100, .camera_link_gbps = 0.1});
   ASSERT_FALSE(plan);
-  EXPECT_EQ(plan.error().reason,
+  EXPECT_EQ(textOf(plan.error().reason),
             "a camera of 1280x1024 at 40 Hz needs 0.423 Gb/s, its link carries 0.095");
   EXPECT_EQ(plan.error().line().find("uplink"), std::string::npos) << plan.error().line();
 }

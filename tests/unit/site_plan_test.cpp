@@ -24,10 +24,10 @@ TEST(SitePlan, FillsInThePacketDelay) {
   const auto fitted = fitToNetwork(config, twentyCameras());
   ASSERT_TRUE(fitted) << fitted.error();
   EXPECT_NEAR(fitted->config.cameras.packet_delay_ns, 80'000, 500);
-  EXPECT_EQ(fitted->lowered, "");
+  EXPECT_TRUE(fitted->lowered.empty());
 }
 
-TEST(SitePlan, LeavesADelayThatSomebodySet) {
+TEST(SitePlan, LeavesADelayThatIsConfigured) {
   Config config;
   config.cameras.packet_delay_ns = 0;
   const auto fitted = fitToNetwork(config, twentyCameras());
@@ -42,9 +42,9 @@ TEST(SitePlan, LowersARateThatNoLinkCarriesAndSaysSo) {
   const auto fitted = fitToNetwork(config, twentyCameras());
   ASSERT_TRUE(fitted) << fitted.error();
   EXPECT_NEAR(fitted->config.trigger.rate_hz, 44.9, 1e-9);
-  EXPECT_THAT(fitted->lowered,
-              StartsWith("trigger: runs at 44.9 Hz instead of 60: 20 cameras of "));
-  EXPECT_THAT(fitted->lowered, HasSubstr("use 2 x 10 Gb/s uplinks"));
+  EXPECT_THAT(textOf(fitted->lowered),
+              StartsWith("triggers run at 44.9 Hz instead of 60: 20 cameras of "));
+  EXPECT_THAT(textOf(fitted->lowered), HasSubstr("use 2 x 10 Gb/s uplinks"));
   EXPECT_GT(fitted->config.cameras.packet_delay_ns, 0);
 }
 
@@ -53,7 +53,7 @@ TEST(SitePlan, RefusesANetworkThatCarriesNextToNothing) {
   config.network = {.uplinks = 1, .uplink_gbps = 0.1, .camera_link_gbps = 1};
   const auto fitted = fitToNetwork(config, twentyCameras());
   ASSERT_FALSE(fitted);
-  EXPECT_THAT(fitted.error(), StartsWith("network: 20 cameras of "));
+  EXPECT_THAT(fitted.error(), StartsWith("[network-refused] network: 20 cameras of "));
   EXPECT_EQ(fitted.error().find('\n'), std::string::npos);
 }
 

@@ -166,7 +166,8 @@ TEST(StatusJournal, AReleasedScreenIsANoticeAndAMissingOneAWarning) {
   StatusJournal journal;
   EXPECT_TRUE(look(journal, {}, 0).empty());
   EXPECT_THAT(look(journal, {.screen = hal::ScreenState::kReleased}, 100),
-              ElementsAre(JournalLine{LogLevel::kNotice, "screen: released"}));
+              ElementsAre(JournalLine{LogLevel::kNotice, "screen: released",
+                                      appliance::Word::kScreenState}));
   EXPECT_THAT(
       look(journal, {.screen = hal::ScreenState::kNoScreen, .screen_message = "connect one"}, 200),
       ElementsAre(JournalLine{LogLevel::kWarning, "screen: no screen: connect one"}));

@@ -64,7 +64,7 @@ class ModeBlob {
 
 }  // namespace
 
-std::expected<Output, std::string> Output::find(int fd, Connector connector) {
+std::optional<Output> Output::find(int fd, Connector connector) {
   const Resources resources(drmModeGetResources(fd), &drmModeFreeResources);
   Output output(fd, std::move(connector));
   const std::uint32_t possible = possibleCrtcs(fd, output.connector_);
@@ -81,7 +81,7 @@ std::expected<Output, std::string> Output::find(int fd, Connector connector) {
     output.plane_ = *plane;
   }
   if (output.crtc_ == 0) {
-    return std::unexpected(output.connector_.name + ": the card has no CRTC with a plane for it");
+    return std::nullopt;
   }
   output.crtc_properties_ = Properties::read(fd, output.crtc_, DRM_MODE_OBJECT_CRTC);
   output.plane_properties_ = Properties::read(fd, output.plane_, DRM_MODE_OBJECT_PLANE);

@@ -27,8 +27,8 @@ struct Vblank {
 /// Threads  One. The device's descriptor outlives it.
 class Output {
  public:
-  /// Errors   One line: no free CRTC, or none with a plane.
-  [[nodiscard]] static std::expected<Output, std::string> find(int fd, Connector connector);
+  /// None if the card has no free CRTC with a plane for the connector.
+  [[nodiscard]] static std::optional<Output> find(int fd, Connector connector);
 
   [[nodiscard]] const Connector& connector() const { return connector_; }
 

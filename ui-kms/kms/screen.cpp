@@ -1,10 +1,11 @@
 #include "ui-kms/kms/screen.h"
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace ui::kms {
+
+using What = hal::ScreenTrouble;
 
 std::expected<std::unique_ptr<Screen>, std::string> Screen::open(const ScreenConfig& config) {
   auto device = Device::open(config.device);
@@ -22,10 +23,10 @@ void Screen::attend(rt::Timestamp now) {
         return;
       case ScreenMachine::Task::kTakeMaster: {
         const auto taken = device_->tryTakeMaster();
-        notice_ = taken ? std::string()
-                        : device_->path() + (taken.error() == EBUSY
-                                                 ? " is another program's: end that one"
-                                                 : " may not be taken: run as root, or alone");
+        trouble_ = {};
+        if (!taken)
+          trouble_ = {taken.error() == EBUSY ? What::kCardInUse : What::kCardNotPermitted,
+                      device_->path()};
         machine_.onMaster(taken.has_value(), now);
         break;
       }
@@ -53,18 +54,17 @@ void Screen::look(rt::Timestamp now) {
   const bool same_connector = output_ && connector && output_->connector().id == connector->id;
   if (output_ && !same_connector) leaveOutput();
   if (!connector) {
-    notice_ = "no screen at " + device_->path() + ": connect one and switch it on";
+    trouble_ = {What::kNothingConnected, device_->path()};
     machine_.onLook({.usable = false}, now);
     return;
   }
   auto output = Output::find(device_->fd(), *connector);
   const auto mode = output ? firstPossible(*output) : std::nullopt;
   if (!mode) {
-    notice_ = !output ? output.error()
-                      : connector->name +
-                            (connector->modes.empty() ? ": the screen offers no mode"
-                                                      : ": the driver refused every mode") +
-                            ": try another cable, port or screen";
+    trouble_ = {!output                    ? What::kNoCrtc
+                : connector->modes.empty() ? What::kNoMode
+                                           : What::kModesRefused,
+                connector->name};
     leaveOutput();
     machine_.onLook({.usable = false}, now);
     return;
@@ -72,15 +72,15 @@ void Screen::look(rt::Timestamp now) {
   const bool unchanged = same_connector && mode_ && sameTiming(*mode_, *mode);
   mode_ = *mode;
   output_ = std::move(*output);
-  notice_ = config_.mode && !fulfils(*mode, *config_.mode)
-                ? connector->name + " does not offer display.mode: shows " + describe(*mode)
-                : std::string();
+  trouble_ = {};
+  if (config_.mode && !fulfils(*mode, *config_.mode))
+    trouble_ = {What::kOtherMode, connector->name, describe(*mode)};
   machine_.onLook({.usable = true, .unchanged = unchanged, .link_good = connector->linkGood()},
                   now);
 }
 
-/// The best of the screen's modes that the driver can set, by its own word; that of a lit one needs
-/// no question.
+/// The best of the screen's modes that the driver says it can set. The mode that is lit is not
+/// asked for.
 std::optional<drmModeModeInfo> Screen::firstPossible(const Output& output) const {
   for (const drmModeModeInfo& mode :
        rankModes(output.connector().modes, config_.trigger_hz, config_.mode)) {
@@ -97,7 +97,7 @@ void Screen::glance(rt::Timestamp now) {
   machine_.onGlance(known && known->connected && known->linkGood(), now);
 }
 
-/// A screen that comes back is to be lit from darkness, so that its link is trained.
+/// A screen that comes back must be lit from darkness, so that its link is trained.
 void Screen::leaveOutput() {
   if (output_ && machine_.master()) static_cast<void>(output_->darken());
   output_.reset();
@@ -129,7 +129,7 @@ rt::Error Screen::onFailure(int error, rt::Timestamp now) {
     case EACCES:
     case EPERM:
       machine_.onMasterLost(now);
-      notice_ = device_->path() + " was taken away: it is taken again when it is free";
+      trouble_ = {What::kCardInUse, device_->path()};
       return {rt::Errc::kDeviceLost, error, "commit: not master"};
     case ENODEV:
       machine_.onDeviceGone();
@@ -139,8 +139,7 @@ rt::Error Screen::onFailure(int error, rt::Timestamp now) {
   }
   if (machine_.state() == ScreenMachine::State::kLighting) {
     machine_.onRefused(now);
-    notice_ = output_->connector().name + ": the driver refused " + describe(*mode_) + " (" +
-              std::strerror(error) + "): try another cable, port or display.mode";
+    trouble_ = {What::kModeRefused, output_->connector().name, describe(*mode_), error};
   } else {
     machine_.onConfused(now);
   }
@@ -153,18 +152,18 @@ void Screen::release() {
   output_.reset();
 }
 
-std::string Screen::message() const {
+Trouble Screen::trouble() const {
   switch (machine_.state()) {
     case ScreenMachine::State::kReleased:
-      return "the screen is released: `kagami screen take` brings the picture back";
+      return {What::kReleased};
     case ScreenMachine::State::kLost:
-      return device_->path() + " is gone: check the graphics card and its driver, then restart";
+      return {What::kCardGone, device_->path()};
     case ScreenMachine::State::kSearching:
     case ScreenMachine::State::kLighting:
     case ScreenMachine::State::kShowing:
-      return notice_;
+      break;
   }
-  return {};
+  return trouble_;
 }
 
 std::string Screen::description() const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/screen_status.h"
 #include "rt/clock.h"
 #include "rt/result.h"
 #include "ui-kms/kms/device.h"
@@ -16,6 +17,14 @@
 #include "ui-kms/kms/screen_machine.h"
 
 namespace ui::kms {
+
+/// Why nothing or less is shown; the texts are those that hal::ScreenTrouble names.
+struct Trouble {
+  hal::ScreenTrouble what = hal::ScreenTrouble::kNone;
+  std::string subject = {};
+  std::string detail = {};
+  int os_errno = 0;
+};
 
 struct ScreenConfig {
   std::string device;            ///< /dev/dri/cardN; empty: the first with a screen
@@ -29,13 +38,14 @@ struct ScreenConfig {
 /// RT       attend() is quick while all is well; a screen that comes or goes takes it tens of
 ///          milliseconds, and a mode that is set may take the driver longer.
 /// Errors   open(): one line. No screen, no permission to show and a refusing driver are states:
-///          message() has the line, and attend() goes on trying.
+///          trouble() says which, and attend() goes on trying.
 class Screen {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<Screen>, std::string> open(
       const ScreenConfig& config);
 
-  /// Lets go of the card at once: a driver's library may keep a copy of the descriptor for longer.
+  /// Releases the card immediately: a driver's library may keep a copy of the descriptor for
+  /// longer.
   ~Screen() { device_->dropMaster(); }
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
@@ -70,8 +80,7 @@ class Screen {
   }
   [[nodiscard]] bool takesFences() const { return output_ && output_->takesFences(); }
 
-  /// Why nothing or less is shown and what to do, in one line; empty where all is well.
-  [[nodiscard]] std::string message() const;
+  [[nodiscard]] Trouble trouble() const;
   /// "HDMI-A-1, 1920x1080 at 60.00 Hz, /dev/dri/card0 (i915)".
   [[nodiscard]] std::string description() const;
 
@@ -92,7 +101,7 @@ class Screen {
   ScreenMachine machine_;
   std::optional<Output> output_;
   std::optional<drmModeModeInfo> mode_;
-  std::string notice_;  // what is less than configured, or what was wrong
+  Trouble trouble_;  // as it was found last
 };
 
 }  // namespace ui::kms
