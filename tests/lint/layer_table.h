@@ -16,7 +16,8 @@ struct Layer {
   std::vector<std::string> libraries;    ///< foreign headers or their first folder; "*" is any
 };
 
-/// Who may include whom. A path belongs to the row with the longest folder that begins it.
+/// Which folder may include which. A path belongs to the row with the longest folder that begins
+/// it.
 class LayerTable {
  public:
   explicit LayerTable(std::vector<Layer> layers) : layers_(std::move(layers)) {}
