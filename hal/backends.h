@@ -55,7 +55,7 @@ struct TriggerLineSettings {
                                                   const PanelSettings& settings,
                                                   std::vector<std::string>& notes);
 
-/// backend "openni" or "folder". A sensor that is not there is no error: it is looked for.
+/// backend "openni" or "folder". A missing sensor is no error: the backend keeps searching for it.
 [[nodiscard]] Opened<DepthSensor> openDepthSensor(std::string_view backend,
                                                   const DepthSensorSettings& settings);
 

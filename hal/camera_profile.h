@@ -36,7 +36,7 @@ struct CameraProfile {
   std::uint32_t socket_buffer_bytes = 4U << 20;
   ResendPolicy resend;
   std::vector<ModelResendPolicy> resend_by_model;  ///< for the models that need another one
-  double link_mbps = 0;  ///< what the plan counts on; a slower link is told. 0: any
+  double link_mbps = 0;  ///< what the plan counts on; a slower link is reported. 0: any
 };
 
 }  // namespace hal

@@ -73,12 +73,12 @@ struct DepthSensorSettings {
 
 /// An RGB-D sensor that looks at the athlete, or a recording of one.
 ///
-/// The sensor supervises itself while its caller waits: one that goes is looked for, and comes
-/// back as it was.
+/// The sensor supervises itself while its caller waits: if the device disappears, the sensor
+/// searches for it and continues with the same settings.
 ///
-/// Threads  One caller: the depth loop, which copies each pair for all readers. status(): any
-/// thread. RT       Blocks; never called from a real-time thread. Errors   No frame within the
-/// timeout is nullopt; status() distinguishes silence, loss and end.
+/// Threads  One caller: the depth loop, which copies each pair for all readers. status(): any.
+/// RT       Blocks; never called from a real-time thread.
+/// Errors   No frame within the timeout is nullopt; status() distinguishes silence, loss and end.
 class DepthSensor {
  public:
   virtual ~DepthSensor() = default;

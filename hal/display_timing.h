@@ -34,7 +34,7 @@ struct DisplayTiming {
     return number;
   }
 
-  /// The last instant at which a warp may begin whose picture shall come with that vblank.
+  /// The last instant at which the warp of a picture for that vblank may begin.
   [[nodiscard]] rt::Timestamp latestStart(std::uint64_t number) const RT_SAFE {
     return vblankAt(number) - draw - commit_margin;
   }

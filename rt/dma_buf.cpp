@@ -54,8 +54,8 @@ Result<DmaBuf> DmaBuf::create(int memory_file, std::size_t offset_bytes, std::si
   UniqueFd fd(::ioctl(device.get(), UDMABUF_CREATE, &request));
   if (!fd.valid()) return std::unexpected(Error{Errc::kUnsupported, errno, "UDMABUF_CREATE"});
 
-  // The CPU's access begins here and never ends, because receiving does not. Begun later it could
-  // drop what the CPU has written; published it is by its end, as often as there is news.
+  // The CPU's access begins here and never ends, because receiving never ends. If it began later,
+  // the kernel could drop what the CPU has written. publishToDevices() makes new content visible.
   if (!sync(fd.get(), DMA_BUF_SYNC_START | DMA_BUF_SYNC_WRITE)) {
     return std::unexpected(Error{Errc::kUnsupported, errno, "DMA_BUF_IOCTL_SYNC"});
   }

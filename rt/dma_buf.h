@@ -18,7 +18,7 @@ struct DmaBufPart {
 };
 
 /// The most bytes that the kernel puts into one dma-buf: udmabuf's parameter size_limit_mb, 64 MiB
-/// unless somebody set it. The folder is an argument for tests.
+/// unless an administrator set it. The folder is an argument for tests.
 /// RT  Not safe: reads a file.
 [[nodiscard]] std::size_t mostDmaBufBytes(
     const std::filesystem::path& parameters = "/sys/module/udmabuf/parameters");
@@ -46,9 +46,9 @@ class DmaBuf {
   std::uint64_t buffer_;
 };
 
-/// Makes what the CPU has written visible to the devices that read next. Nothing to do for the
-/// kernel where devices see the CPU's caches, as on x86; true when it is done.
-/// RT  Not safe: a system call whose time grows with the dma-buf where there is something to do.
+/// Makes what the CPU has written visible to the devices that read next; true when it is done. On
+/// x86 devices see the CPU's caches and the kernel has nothing to do.
+/// RT  Not safe: a system call whose time may grow with the dma-buf.
 [[nodiscard]] bool publishToDevices(int dma_buf_fd);
 
 }  // namespace rt

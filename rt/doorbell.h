@@ -17,7 +17,7 @@ namespace rt {
 ///
 /// Threads  ring(): any. waitUntil(): one thread.
 /// RT       ring() adds to a counter, and makes one bounded system call (futex wake)
-///          only while somebody waits; it never blocks. waitUntil() blocks.
+///          only while a thread waits; it never blocks. waitUntil() blocks.
 /// Memory   What was written before ring() is visible after the waitUntil() it ends.
 class Doorbell {
  public:

@@ -13,7 +13,7 @@
 namespace rt {
 
 /// Bytes that can still be allocated without swapping or an out-of-memory kill:
-/// MemAvailable, or less where a cgroup (version 2) sets a tighter memory.max.
+/// MemAvailable, or less if a cgroup (version 2) sets a tighter memory.max.
 /// 0 when the kernel does not say. The folders are arguments for tests.
 /// RT  Not safe: reads files.
 [[nodiscard]] std::uint64_t availableMemoryBytes(
@@ -28,7 +28,7 @@ enum class PageKind : std::uint8_t {
 [[nodiscard]] const char* toString(PageKind kind) noexcept;
 
 enum class ArenaBacking : std::uint8_t {
-  kPrivate,     ///< memory that belongs to nobody else
+  kPrivate,     ///< memory of this process alone
   kMemoryFile,  ///< a file in memory that cannot shrink: its pages can become dma-bufs (rt::DmaBuf)
 };
 
@@ -44,10 +44,10 @@ struct ArenaReport {
 ///
 /// Not part of core dumps. Made before the real-time threads start; they only use it.
 ///
-/// Threads  The owner's; the bytes are whoever's the owner says.
+/// Threads  The owner's; the owner decides who may use the bytes.
 /// RT       Not safe to make or destroy; bytes() is.
 /// Errors   kNoMemory: more than is available less the margin; nothing was allocated
-///          then, so nobody is killed for it. kInvalidConfig: zero bytes.
+///          then, so no process is killed for it. kInvalidConfig: zero bytes.
 class LockedArena {
  public:
   /// Left to the rest of the system.
@@ -64,7 +64,7 @@ class LockedArena {
 
   [[nodiscard]] std::span<std::byte> bytes() const noexcept { return {data_, report_.bytes}; }
   [[nodiscard]] const ArenaReport& report() const noexcept { return report_; }
-  /// The file whose bytes these are, from its beginning; -1 where the memory is private.
+  /// The file whose bytes these are, from its beginning; -1 if the memory is private.
   [[nodiscard]] int memoryFile() const noexcept { return file_.get(); }
 
  private:
@@ -84,9 +84,9 @@ struct MemoryLock {
   std::string message;  ///< when not locked: one line, what and what to do
 };
 
-/// Locks everything this process has mapped and will map (mlockall). Where a
-/// limit binds it is not even tried: under MCL_FUTURE every later allocation
-/// beyond the limit would fail, which is worse than a page fault.
+/// Locks everything this process has mapped and will map (mlockall). It does not try if a limit
+/// applies: under MCL_FUTURE every later allocation beyond the limit would fail, which is worse
+/// than a page fault.
 /// RT  Not safe. Call it once, early.
 [[nodiscard]] MemoryLock lockMemory();
 

@@ -120,7 +120,7 @@ class SlotPin {
 ///
 /// A retired slot that a reader still holds is parked and collected by a later
 /// tryAcquire(): the writer never waits. With as many slots as are filling and
-/// stored at once, plus one per pin that readers may hold together, tryAcquire()
+/// stored at the same time, plus one per pin that readers may hold together, tryAcquire()
 /// cannot fail: see PinBudget.
 ///
 /// Threads  tryPin(): any. All else: the writer.

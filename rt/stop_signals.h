@@ -5,7 +5,7 @@
 
 namespace rt {
 
-/// SIGINT and SIGTERM as something to ask for, in place of handlers.
+/// SIGINT and SIGTERM as a state that can be polled, instead of handlers.
 ///
 /// Blocks both for the calling thread and all threads it makes afterwards, those of libraries too:
 /// construct it first thing in main().
@@ -20,7 +20,7 @@ class StopSignals {
   /// Waits for one, at most @p timeout.
   bool waitFor(Nanoseconds timeout);
 
-  /// Readable once one of them came, for who waits for more than that; -1 where there is none.
+  /// Readable after a signal; for poll() together with other descriptors. -1 if there is none.
   [[nodiscard]] int fd() const { return fd_.get(); }
 
  private:

@@ -31,12 +31,12 @@ struct ThreadConfig {
   std::size_t prefault_stack_bytes = std::size_t{64} * 1024;  ///< touched before the body runs
 };
 
-/// What the system granted. A thread that was refused something runs all the same,
-/// under SCHED_OTHER: a degraded mode that the caller names to a person.
+/// What the system granted. A thread runs even if something was refused, then under SCHED_OTHER:
+/// a degraded mode, which the caller reports to a person.
 struct ThreadGrant {
-  bool realtime = true;  ///< policy and priority are as asked
-  bool affinity = true;  ///< the CPU set is as asked
-  int os_errno = 0;      ///< of the first refusal: EPERM for want of privilege
+  bool realtime = true;  ///< policy and priority are as requested
+  bool affinity = true;  ///< the CPU set is as requested
+  int os_errno = 0;      ///< of the first refusal: EPERM: a privilege is missing
 
   [[nodiscard]] bool complete() const noexcept { return realtime && affinity; }
 };

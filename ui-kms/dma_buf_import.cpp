@@ -35,8 +35,8 @@ Function functionOf(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// Whether the driver wants to be told that rows simply follow each other; without that it assumes
-/// it of memory that nobody has described to it.
+/// Whether the driver must get the layout that rows simply follow each other; otherwise it assumes
+/// that layout of memory without a description.
 bool namesLinearModifier(EGLDisplay display, const char* extensions) {
   if (!lists(extensions, "EGL_EXT_image_dma_buf_import_modifiers")) return false;
   const auto query = functionOf<PFNEGLQUERYDMABUFMODIFIERSEXTPROC>("eglQueryDmaBufModifiersEXT");
@@ -100,7 +100,7 @@ GLuint DmaBufImport::tryImport(const hal::SourceImage& source) {
   void* const image = imageOf(source);
   if (image == nullptr || !rt::publishToDevices(source.dma_buf.fd)) return 0;
   glBindTexture(GL_TEXTURE_2D, texture_.get());
-  // Bound anew for each picture: only then must the driver look at what was written since.
+  // Bound again for each picture: only then does the driver read what was written since.
   functions_->image_target_texture(GL_TEXTURE_2D, image);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);

@@ -61,7 +61,7 @@ std::optional<Picture> readPicture(const SideFile& side) {
   return picture;
 }
 
-/// How long a picture stood; a screen that was away for long is cut short.
+/// How long a picture was shown; a long absence of the screen is shortened.
 double standsForS(const Picture& picture, const Picture& next) {
   constexpr double kLongestS = 10;
   return std::clamp(static_cast<double>(next.commit_ns - picture.commit_ns) * 1e-9, 0.0, kLongestS);

@@ -8,7 +8,7 @@
 
 namespace ui {
 
-/// Flips until somebody takes them; when kKept wait, the oldest is overwritten.
+/// Flips until the caller takes them. When kKept wait, the oldest is overwritten.
 class FlipList {
  public:
   static constexpr std::size_t kKept = 64;

@@ -11,7 +11,7 @@ namespace {
 // the memory, sqrt(2 * sqrt(kWander)) = 1.4 % of a stamp's error goes into the instant.
 constexpr double kWander = 1e-8;
 constexpr double kPeriodUnsure = 0.01;    // of the mode's refresh rate, relative
-constexpr double kFirstJitter_ns = 50e3;  // until stamps have told
+constexpr double kFirstJitter_ns = 50e3;  // until stamps are known
 constexpr double kLeastJitter_ns = 2e3;
 constexpr double kJitterMemory = 64;      // stamps
 constexpr double kFirstJitterWeight = 4;  // stamps

@@ -12,12 +12,12 @@ namespace ui {
 /// Estimates a screen's vblanks from the stamps of its page flips, and how long pictures take.
 ///
 /// A Kalman filter with two states, the instant of a vblank and the period, whose measurement is a
-/// flip's stamp (decision 0012, docs/genlock.md). Between two flips the vblank number tells how
-/// many periods went by, so lost events cost nothing but time. Covariances are kept in units of
+/// flip's stamp (decision 0012, docs/genlock.md). Between two flips the vblank number shows how
+/// many periods passed, so lost events cost only time. Covariances are kept in units of
 /// the stamps' jitter: the gains depend on the number of flips alone, from the best straight line
 /// through the first few to a memory of about 140 vblanks. A stamp that is off counts for three
 /// standard deviations at most. A vblank number that goes back, and several stamps in a row an
-/// eighth of a period and more off to the same side, are another mode: start anew. The first stamp
+/// eighth of a period and more off to the same side, are another mode: start again. The first stamp
 /// of all is not used: the flip that sets a mode has one that is milliseconds off.
 ///
 /// Threads  One: the display's caller. Pure: time is an argument.

@@ -155,7 +155,7 @@ void KmsDisplay::onFlip(const kms::FlipEvent& event, rt::Timestamp now) {
   queue_.onFlip(event.serial, vblank.number, vblank.at);
   if (*vblanks_known_ && stamped) pacer_.onVblank(vblank.number, vblank.at);
   if (!drawing.fence.valid()) return;
-  // Only now is known when the GPU was done. Drivers that were done at once hand out a fence that
+  // Only now is it known when the GPU was done. Drivers that finish immediately return a fence that
   // was signalled long ago, one for all.
   if (const auto drawn = kms::signalledAt(drawing.fence.get())) {
     drawing.instants.warp_end = std::max(drawing.instants.warp_end, *drawn);

@@ -19,8 +19,8 @@
 namespace ui {
 
 struct KmsConfig {
-  RendererConfig renderer;  ///< its size is that of pictures until there is a screen
-  double refresh_hz = 60;   ///< until there is a screen
+  RendererConfig renderer;  ///< its size is used while no screen is connected
+  double refresh_hz = 60;   ///< used while no screen is connected
   std::string device;       ///< /dev/dri/cardN; empty: the first with a screen
   std::string mode;         ///< "1920x1080@59.94"; empty: the best for the trigger rate
   double trigger_hz = 0;
@@ -30,8 +30,9 @@ struct KmsConfig {
 
 /// A true screen, by atomic mode setting: no desktop, no window system. docs/display.md.
 ///
-/// A screen that is unplugged, replaced or shown on by another program is an interruption: until
-/// it is back render() and commit() return kDeviceLost at once. mode() may be another afterwards.
+/// A screen that is unplugged, replaced or used by another program is an interruption: until
+/// it is back render() and commit() return kDeviceLost immediately. mode() may be another
+/// afterwards.
 ///
 /// Threads  create() on a SCHED_OTHER thread; afterwards one caller, the render thread. It calls
 ///          detach() before it ends, so that another thread may destroy the display.

@@ -52,7 +52,7 @@ class OffscreenDisplay final : public hal::Display, public PictureSource {
   }
   [[nodiscard]] std::optional<rt::Timestamp> nextCall() const override;
   [[nodiscard]] hal::ScreenStatus screen() const override { return config_.screen; }
-  /// Nobody else can show anything here.
+  /// No other program can show anything here.
   void releaseScreen() override {}
   void takeScreen() override {}
   void detach() override { renderer_->context().release(); }

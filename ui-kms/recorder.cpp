@@ -53,7 +53,7 @@ Recorder::~Recorder() = default;
 
 bool Recorder::filmDue(rt::Timestamp commit) {
   if (commit < next_film_) return false;
-  // Absolute steps, so that the rate holds; after a pause the grid starts anew.
+  // Absolute steps, so that the rate holds; after a pause the grid starts again.
   const bool paused = commit - next_film_ > film_period_;
   next_film_ = (paused ? commit : next_film_) + film_period_;
   return true;

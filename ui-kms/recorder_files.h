@@ -42,7 +42,7 @@ struct RecorderJob {
 ///   NAME.png        a still at full size; NAME.rgba until finish()
 ///
 /// Threads  One at a time.
-/// Errors   The first failed write is kept and told by finish(); nothing is written after it.
+/// Errors   finish() reports the first failed write; nothing is written after it.
 class RecorderFiles {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<RecorderFiles>, std::string> open(

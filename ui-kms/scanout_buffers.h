@@ -42,7 +42,7 @@ class ScanoutBuffers {
   [[nodiscard]] std::uint32_t framebuffer(std::uint32_t buffer) const {
     return buffers_[buffer].framebuffer.id();
   }
-  /// After drawing: brings the pixels to where the screen reads them.
+  /// After drawing: copies the pixels to where the screen reads them, if they are not there.
   void finishDraw(std::uint32_t buffer);
 
  private:

@@ -14,9 +14,10 @@ namespace ui {
 /// The life of the buffers of a screen whose flips are events. render() draws a free one, commit()
 /// makes it pending, the flip event puts it on screen and frees the one before. With a depth of 2 a
 /// picture may be committed while another is pending: it is queued here, and goes to the kernel
-/// when that one's flip is told. It is then up to one vblank older when it comes on screen.
+/// when that one's flip is reported. It is then up to one vblank older when it comes on screen.
 ///
-/// Memory   Storage is made by the constructor. Flips that nobody takes stay in a FlipList.
+/// Memory   Storage is made by the constructor. Flips that the caller has not taken stay in a
+/// FlipList.
 class ScanoutQueue {
  public:
   /// @p depth: 1 or 2, pictures on their way to the screen.
@@ -41,7 +42,7 @@ class ScanoutQueue {
 
   /// A picture behind the pending one.
   void queue(std::uint32_t buffer, std::uint64_t picture_id);
-  /// The one whose turn has come: queued, and nothing is pending any more.
+  /// The queued picture that may be submitted now: nothing is pending any more.
   struct Due {
     std::uint32_t buffer;
     std::uint64_t picture_id;
@@ -61,7 +62,7 @@ class ScanoutQueue {
 
   /// The buffer committed last, if any.
   [[nodiscard]] std::optional<std::uint32_t> committed() const { return committed_; }
-  /// Its flip, if it was told already.
+  /// Its flip, if it was reported already.
   [[nodiscard]] std::optional<hal::PageFlip> committedFlip() const { return committed_flip_; }
 
  private:

@@ -15,7 +15,8 @@ namespace ui {
 /// The life of the buffers of one screen. Pure: time is an argument, and what happened at vblanks
 /// in between is worked out when the next call asks.
 ///
-/// Memory   Storage is made by the constructor. Flips that nobody takes stay in a FlipList.
+/// Memory   Storage is made by the constructor. Flips that the caller has not taken stay in a
+/// FlipList.
 class SwapChain {
  public:
   SwapChain(std::uint32_t buffers, FlipGrid grid);

@@ -25,8 +25,8 @@ struct BoxParts {
   PictureObserver* observer = nullptr;  ///< likewise; none: no observer
   std::span<const PartEntry> parts = productParts();
   rt::Nanoseconds patience = PartList::kPatience;  ///< for one part to stop
-  /// Called when some part did not stop and everything else has, with a line for each. It ends the
-  /// process: what would be destroyed next is still in use.
+  /// Called with a line for each part that did not stop, after everything else has stopped. It ends
+  /// the process, because these parts' threads still use what would be destroyed next.
   std::function<void(const std::vector<std::string>& lines)> on_hang;
 };
 

@@ -24,7 +24,7 @@ std::string Box::metrics() const {
   return toJson(metrics_.snapshot());
 }
 
-/// What a person says of the target holds from the moment on screen on.
+/// A target that a person sets holds from the moment that is on the screen.
 rt::Timestamp Box::shownExposure() const {
   const rt::Timestamp shown = shown_.exposure_middle.load(std::memory_order_relaxed);
   return shown == rt::Timestamp{} ? rt::now() : shown;

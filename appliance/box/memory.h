@@ -15,7 +15,7 @@ namespace appliance {
 /// What the history is made for.
 struct HistoryUse {
   std::uint32_t pins_per_camera = 0;  ///< of all readers together
-  /// In memory that a GPU can read in place. It has its price, small pages mostly.
+  /// In memory that a GPU can read in place. The price: most of its pages are small.
   bool shared = false;
 };
 
@@ -24,8 +24,8 @@ struct HistoryUse {
 [[nodiscard]] std::expected<std::unique_ptr<FrameHistory>, std::string> makeHistory(
     const Config& config, const Rig& rig, const HistoryUse& use, Remarks& remarks);
 
-/// Locks the process's memory, after the history: before it, its pages would be faulted in one by
-/// one.
+/// Locks the process's memory. Call it after the history was made: otherwise the history's pages
+/// would be faulted in one by one.
 /// Errors  One line: it is refused and realtime.require is set.
 [[nodiscard]] std::expected<void, std::string> lockMemory(const RealtimeSettings& realtime,
                                                           const FrameHistory& history,

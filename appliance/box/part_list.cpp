@@ -9,7 +9,7 @@ namespace appliance {
 
 PartList::~PartList() {
   (void)stop();
-  while (!parts_.empty()) parts_.pop_back();  // a vector would begin with the first one
+  while (!parts_.empty()) parts_.pop_back();  // the vector's destructor would begin with the first
 }
 
 std::expected<void, std::string> PartList::start() {

@@ -30,14 +30,14 @@ class CameraArray {
   CameraArray(const Config& config, const Rig& rig, FrameHistory& history, CaptureBoard& board,
               TraceWriter* trace);
 
-  /// Starts all together; returns when every camera streams or is known not to. One that does not
-  /// is named in statuses() and tried again for as long as it takes. Errors: no thread could be
-  /// made; those that were are stopped by stop().
+  /// Starts all together. Returns when each camera streams or its first attempt has failed; a
+  /// failed one is named in statuses() and tried again forever. Errors: a thread could not be made;
+  /// stop() stops the others.
   [[nodiscard]] std::expected<void, std::string> start();
   void stop();
 
   [[nodiscard]] std::vector<CameraStatus> statuses() const;
-  /// What is not as it should be although a camera streams, or would.
+  /// What is wrong at cameras that stream all the same.
   [[nodiscard]] std::vector<Remark> remarks() const;
   /// The sums over all cameras.
   [[nodiscard]] CollectorCounts counts() const;

@@ -94,7 +94,7 @@ class CameraFrames {
 
   [[nodiscard]] std::span<const std::span<std::byte>> slots() const { return slots_; }
 
-  /// The slots that the camera fills, `in_flight` at any time: a stream that ended in the midst of
+  /// The slots that the camera fills, `in_flight` at any time: a stream that ended amid
   /// some frames leaves exactly these to the next one.
   /// Threads  The one that starts and stops the camera, while it is stopped.
   [[nodiscard]] std::span<const std::uint32_t> fillingSlots() const { return filling_; }

@@ -58,7 +58,7 @@ CameraAction CameraMachine::watch(rt::Timestamp now, const CameraFacts& facts) {
     answered_ = false;
     proven_ = false;
     phase_ = Phase::kSilent;
-    // What it is will be known as soon as it was asked; what was known of it stays until then.
+    // The next probe shows what is wrong; until then the last known state stays.
     if (health_.state != CameraState::kLost) lose(CameraTrouble::kNone);
     next_probe_ = now;
     return search(now, facts);
@@ -151,7 +151,8 @@ void CameraMachine::probedWhileOpen(const hal::CameraProbe& probe) {
       phase_ = Phase::kToClose;
       break;
     case hal::CameraAnswer::kHeld:
-      // A camera that does not tell its controller is probably still ours: our letting go shows.
+      // A camera that does not report its controller is probably still ours: releasing it will
+      // show.
       if (!probe.controller.empty()) phase_ = Phase::kToClose;
       [[fallthrough]];
     case hal::CameraAnswer::kOurs:

@@ -102,7 +102,7 @@ class CameraMachine {
   rt::Timestamp held_since_;
   rt::Timestamp next_probe_;
   rt::Timestamp next_try_;
-  std::uint64_t expected_from_ = 0;  // triggers from this one on must bring frames
+  std::uint64_t expected_from_ = 0;  // triggers from this one on must deliver frames
   std::uint64_t patient_until_ = 0;  // silence before this trigger is no loss
   std::uint64_t stored_when_silent_ = 0;
   CameraFacts mark_;        // facts when the present window of judging began

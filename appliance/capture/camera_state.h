@@ -27,7 +27,7 @@ enum class CameraTrouble : std::uint8_t {
   kHeld,      ///< another program controls it
   kRefuses,   ///< it answers, but does not take its settings or does not start
   kSilent,    ///< it answers and has its settings, but sends no frames
-  kGaps,      ///< some triggers bring no frame
+  kGaps,      ///< some triggers deliver no frame
   kDamaged,   ///< some frames come with packets missing, or in another size
   kExtra,     ///< it sends more frames than there are triggers
 };

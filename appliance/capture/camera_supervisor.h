@@ -63,13 +63,13 @@ class CameraSupervisor {
   /// Until the first attempt to stream has ended, well or not; false at @p deadline.
   [[nodiscard]] bool waitSettled(rt::Timestamp deadline);
 
-  /// The camera is let go as soon as it can be. stop() waits for that: seconds for a dead one, so
-  /// ask all before waiting for one.
+  /// Releases the camera as soon as possible. stop() waits for that, which takes seconds for a dead
+  /// one: request all stops before waiting for one.
   void requestStop();
   void stop();
 
   [[nodiscard]] CameraHealth health() const;
-  /// What is not as it should be although it streams, or would: one line each. Any thread.
+  /// What is wrong at the camera although it streams. Any thread.
   [[nodiscard]] std::vector<Phrase> remarks() const;
   [[nodiscard]] const PacketCounts& packets() const { return packets_; }
   /// Since its last stored frame; nothing before the first.

@@ -49,7 +49,7 @@ class Collector final : public hal::FrameSink {
   [[nodiscard]] std::uint32_t onFrame(const hal::FrameArrival& arrival) RT_SAFE override;
 
   /// A new stream begins: its camera may have been switched off, its clock set back.
-  /// Threads  Whoever starts the camera, while it is stopped.
+  /// Threads  The one that starts the camera, while it is stopped.
   void restart() {
     matcher_.restart();
     restarted_ = true;

@@ -9,9 +9,9 @@
 
 namespace appliance {
 
-/// The last trigger edges, for all who look for the trigger of a frame. The trigger loop reads the
-/// clock before and after it drives the line: the edge lies somewhere between, and the board has
-/// the middle and what it may be off.
+/// The last trigger edges, for every thread that searches for the trigger of a frame. The trigger
+/// loop reads the clock before and after it drives the line. The edge lies between the two; the
+/// board has the middle and its uncertainty.
 ///
 /// Threads  post(): the trigger loop, ids 1, 2, 3 ... in order. Everything else: any thread.
 /// RT       Wait-free.
@@ -45,7 +45,7 @@ class EdgeBoard {
     return rt::fromNs(edge_ns);
   }
 
-  /// What the edge of that trigger may be off; 0 if it is not on the board.
+  /// The uncertainty of that trigger's edge; 0 if it is not on the board.
   [[nodiscard]] rt::Nanoseconds uncertainty(std::uint64_t trigger) const RT_SAFE {
     const Entry& entry = entries_[trigger % kCapacity];
     if (trigger == 0 || entry.trigger.load(std::memory_order_acquire) != trigger) return {};

@@ -75,8 +75,8 @@ rt::Nanoseconds Genlock::step(rt::Timestamp deadline) RT_SAFE {
   return mistuned + std::clamp(-error - lead_step, -most, most);
 }
 
-/// Lead takes up its parts' sum when a phase is first sought; later it follows, slowly, when that
-/// has gone by more than the slack. How far it moved.
+/// Sets the lead to the sum of its parts when a phase is first searched for. Later it follows that
+/// sum slowly, and only if they differ by more than the slack. Returns how far it moved.
 rt::Nanoseconds Genlock::moveLead() RT_SAFE {
   const rt::Nanoseconds wanted =
       input_.ready_delay + parameters_.margin + input_.timing->draw + input_.timing->commit_margin;

@@ -23,10 +23,11 @@ struct GenlockInput {
 ///
 ///     vblankAt(v) - lead,   lead = ready_delay + margin + draw + commit_margin
 ///
-/// and the next one n vblanks later, n = round(period / vblank period). Deadlines are moved by at
-/// most kMostSlew of a period per trigger, plus what the two rates differ (kMostMistuned at most):
-/// cameras need that much headroom. Lead follows its parts slowly, so that a lock is never lost to
-/// them. The mains frequency plays no part: exposure and gain handle lamps.
+/// and the next one n vblanks later, n = round(period / vblank period). Per trigger, a deadline
+/// moves by at most kMostSlew of a period plus the difference of the two rates (at most
+/// kMostMistuned): cameras need that much headroom. The lead follows its parts slowly, so that
+/// their changes never break a lock. The mains frequency is not used: exposure and gain handle
+/// lamps.
 ///
 /// Threads  One: the trigger loop's. Pure: time is an argument.
 /// RT       RT safe.
@@ -45,7 +46,7 @@ class Genlock {
 
   explicit Genlock(const Parameters& parameters);
 
-  /// The newest input; without timing the last one is held over.
+  /// Takes the newest input. If it has no timing, the last timing is held over.
   void take(const GenlockInput& input) RT_SAFE;
 
   /// How far the coming deadline, one configured period after the last, is to be moved.

@@ -6,11 +6,11 @@
 
 namespace appliance {
 
-/// Finds that of every frame only the small packets come: leader and trailer are far below any
-/// MTU, the payload is not. That is what a camera looks like whose MTU was lowered on the way
-/// while it ran; ordinary loss leaves most packets, a dead camera leaves no frame at all.
+/// Detects that only the small packets of each frame arrive. This happens when the MTU of a link is
+/// lowered while the camera runs: leader and trailer are below any MTU, the payload is not.
+/// Ordinary loss leaves most packets; a dead camera sends no frame at all.
 ///
-/// Pure: it is given the counts of Camera::statistics() now and then.
+/// Pure: the caller gives it the counts of Camera::statistics() from time to time.
 class LargePacketLoss {
  public:
   /// @p packets: of a frame, leader and trailer included.

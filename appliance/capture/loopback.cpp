@@ -13,8 +13,8 @@ using namespace std::chrono_literals;
 /// An edge that takes longer than this, opto-isolators included, does not come.
 constexpr rt::Nanoseconds kLongestEdge = 20ms;
 
-/// The line may have come to rest only now, when it was opened: the loop-back is to follow first.
-/// One that never rests (an open input) is looked at all the same.
+/// Opening the line may just have changed its level: wait until the loop-back has followed. A
+/// loop-back that never rests (an open input) is checked after kLongestUnrest.
 constexpr rt::Nanoseconds kQuiet = 5ms;
 constexpr rt::Nanoseconds kLongestUnrest = 100ms;
 

@@ -8,7 +8,7 @@
 namespace appliance {
 namespace {
 
-// EGL takes the place of a frame in its dma-buf as a 32-bit number.
+// EGL takes the offset of a frame in its dma-buf as a 32-bit number.
 constexpr std::size_t kMostBlockBytes = std::size_t{1} << 30U;
 
 std::string refusal(const rt::Error& error, std::size_t made) {

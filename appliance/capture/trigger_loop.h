@@ -35,8 +35,8 @@ struct TriggerMetrics {
 /// Fires the cameras: one pulse per period on an absolute grid, never paused. The genlock moves
 /// the grid's coming deadlines, a little per pulse.
 ///
-/// A pulse more than a fifth of a period late is given up, for two pulses too close to each
-/// other would make cameras ignore the second one.
+/// A pulse more than a fifth of a period late is given up, because cameras would ignore the second
+/// of two pulses that are too close to each other.
 ///
 /// Threads  run(): the `trigger` thread. The counters: any thread.
 /// RT       run() sleeps, drives the line, posts the edge; nothing else.

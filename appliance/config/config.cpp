@@ -11,7 +11,7 @@
 namespace appliance {
 namespace {
 
-/// What holds only between keys, whichever layer set them.
+/// The rules between several keys. They apply to the final values, from whichever layer they came.
 void checkTogether(const TomlTable& root, const Config& config) {
   const double period_us = 1e6 / config.trigger.rate_hz;
   if (config.cameras.exposure_us >= period_us)
@@ -31,7 +31,8 @@ void checkTogether(const TomlTable& root, const Config& config) {
                              " at this trigger rate and resend.frame_retention_us");
 }
 
-/// Reads what @p root holds over @p config; every key that exists, in the file's order.
+/// Reads the keys of @p root into @p config, in the file's order; keys that it lacks keep their
+/// values.
 std::vector<std::string> readAll(const TomlTable& root, Config& config, bool typed) {
   ConfigReading reading{.typed = typed};
   Section sections(root, "", reading);

@@ -17,7 +17,7 @@
 
 namespace appliance {
 
-/// What reading the configuration collects besides values.
+/// What the reader collects besides the values.
 struct ConfigReading {
   /// A person has just typed it: an unknown key is an error. In a file another version may have
   /// written it: then it is ignored with a warning.
@@ -26,7 +26,8 @@ struct ConfigReading {
   std::vector<std::string> warnings;  ///< what was read and has no effect, one line each
 };
 
-/// Reads the keys of one table into their fields, absent ones stay; every key is named once.
+/// Reads the keys of one table into their fields. A field whose key is absent keeps its value. Each
+/// key is named once.
 class Section {
  public:
   Section(TomlTable table, std::string path, ConfigReading& reading)
@@ -112,7 +113,7 @@ class Section {
   }
   void fail(std::string_view key, const std::string& message) const { table_.fail(key, message); }
 
-  /// A key of earlier versions: it is accepted, has no effect, and a line says so.
+  /// A key of earlier versions: it is accepted without effect, and a warning says so.
   void retired(std::string_view key, const char* because) {
     own_keys_.push_back(key);
     if (!table_.has(key)) return;

@@ -38,8 +38,8 @@ struct IntegerRange {
 /// line, never a silent default. The reader decides whether an unknown key is an error or a
 /// warning.
 ///
-/// Read every value first and ask error() once at the end: getters never fail loudly, they
-/// note the first fault and return a harmless value.
+/// Read every value first and call fault() once at the end: a getter that fails notes the first
+/// fault and returns a harmless value.
 ///
 ///   auto file = TomlFile::load("rig.toml");
 ///   if (!file) return std::unexpected(file.error());

@@ -11,13 +11,13 @@ namespace appliance {
 struct BusCloser {
   void operator()(sd_bus* bus) const { sd_bus_flush_close_unref(bus); }
 };
-/// A client's: closing waits until everything was sent.
+/// The connection of a client: closing waits until everything was sent.
 using Bus = std::unique_ptr<sd_bus, BusCloser>;
 
 struct ServerBusCloser {
   void operator()(sd_bus* bus) const { sd_bus_close_unref(bus); }
 };
-/// The daemon's: closing never waits for a bus that takes nothing any more.
+/// The connection of the daemon: closing never waits for a bus that no longer reads.
 using ServerBus = std::unique_ptr<sd_bus, ServerBusCloser>;
 
 inline constexpr const char* kControlPath = "/org/kagami/Kagami1";

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kPrimaryOwner = 1;
 constexpr std::uint32_t kAlreadyOwner = 4;
 
-/// Signals that a bus does not take any more pile up here.
+/// Signals pile up in our queue if the bus no longer reads them.
 constexpr std::uint64_t kMostQueued = 1000;
 
 /// A call to the bus itself, made while a message is handled, delays the event loop at most so

@@ -9,7 +9,7 @@
 namespace appliance {
 namespace {
 
-/// sd-bus's error and reply, given back whatever happens.
+/// sd-bus's error and reply, released in every case.
 struct Exchange {
   Exchange() = default;
   Exchange(const Exchange&) = delete;

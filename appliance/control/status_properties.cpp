@@ -9,7 +9,7 @@ std::string text(std::string_view name) {
   return std::string(name);
 }
 
-/// @p reasons: a reason may say for how long, so that it is another text at every look.
+/// @p reasons: a reason may contain a growing number of seconds, so its text changes at every tick.
 std::vector<BusDictionary> cameraTable(const Status& status, bool reasons) {
   std::vector<BusDictionary> table;
   for (const CameraStatus& camera : status.cameras) {

@@ -44,7 +44,7 @@ bool Director::isHome(const Available& at) const RT_SAFE {
   return !comparison_ && modeNow() == Mode::kLive && view_ == (at.cameras - 1) / 2;
 }
 
-/// A moment that could not be kept is left for the one that was: see Shot::hold.
+/// If the new moment's frames could not be kept, the moment before stays: see Shot::hold.
 void Director::keepStop(const Available& at) RT_SAFE {
   const std::uint64_t held = at.stored.heldTrigger();
   if (!stopped_ || held == 0 || held == stopped_->trigger) return;
@@ -82,8 +82,8 @@ std::uint64_t Director::firstStoredFrom(const Available& at, std::uint64_t trigg
   return trigger;
 }
 
-/// If what would be played next is gone, the playback stops: a faster rate than the one asked for
-/// would be a lie.
+/// If the next moment of a playback is no longer stored, the playback stops. To catch up it would
+/// have to play faster than requested.
 void Director::keepToMemory(const Available& at) RT_SAFE {
   if (playhead_.trigger() > at.range.newest) playhead_.seek(at.range.newest);
   if (playhead_.trigger() >= at.oldest_usable) return;
@@ -126,7 +126,7 @@ Shot Director::decide(const Available& at, const Presentation& picture) RT_SAFE 
     }
     frame = choice_.played(at, view_, last, playhead_.trigger(), picture.at);
   }
-  // Better the last picture than a moment that nobody asked for.
+  // The last picture is better than a moment that was not requested.
   if (!frame && last.trigger != 0) frame = last;
   if (frame) {
     shot.camera_shown = frame->camera;
@@ -137,8 +137,8 @@ Shot Director::decide(const Available& at, const Presentation& picture) RT_SAFE 
   return shot;
 }
 
-/// If the second frame is not there, the first one is shown alone: no other moment stands in for
-/// it. While live its camera may be a few microseconds later, so a trigger earlier will do.
+/// If the second frame is missing, the first one is shown alone: no other moment replaces it. While
+/// live, its camera may deliver a few microseconds later, so one trigger earlier is accepted.
 void Director::decideSecond(const Available& at, Shot& shot) const RT_SAFE {
   const std::uint64_t back = at.inTriggers(comparison_->delay);
   const std::uint32_t camera = comparison_->camera.value_or(shot.camera_shown);

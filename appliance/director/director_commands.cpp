@@ -12,7 +12,7 @@ namespace {
 
 constexpr rt::Nanoseconds kLongestDelay = std::chrono::hours(1);
 
-/// Goes on to another moment, for which the view of the sweep's start is the one to see.
+/// Goes on to another moment and returns to the view from which the sweep started.
 bool leavesTheMoment(Command::Kind kind) {
   using enum Command::Kind;
   return kind == kGoLive || kind == kHome || kind == kDelayLess || kind == kDelayMore ||
@@ -81,8 +81,8 @@ CommandOutcome Director::apply(const Command& command, const Available& at) RT_S
   return CommandOutcome::kApplied;
 }
 
-/// A walk around a stopped moment ends with every command, where the view is then; a playback goes
-/// on while only the view changes.
+/// Each command ends a walk around a stopped moment; the view stays where it is then. A playback
+/// goes on if only the view changes.
 void Director::interruptProgramme(Command::Kind by) RT_SAFE {
   if (!programme_) return;
   if (by == Command::Kind::kStartSweep && return_to_) return;
@@ -119,7 +119,7 @@ CommandOutcome Director::freeze(const Available& at) RT_SAFE {
   return CommandOutcome::kAtMemorysEnd;
 }
 
-/// Slow motion goes on from the stopped moment while what follows it is stored.
+/// Slow motion goes on from the stopped moment, as long as the next moments are stored.
 CommandOutcome Director::thaw(const Available& at) RT_SAFE {
   if (!stopped_) return CommandOutcome::kApplied;
   if (stopped_->trigger < at.oldest_usable) rate_ = Rate::kFull;

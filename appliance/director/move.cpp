@@ -6,7 +6,8 @@
 namespace appliance {
 namespace {
 
-/// One degree in an hour and a half; slower would be no move, and its duration could overflow.
+/// One degree in an hour and a half. A slower move could not be seen, and its duration could
+/// overflow.
 constexpr double kSlowest_deg_per_s = 2e-4;
 
 double easeOf(const Move& move) {

@@ -5,7 +5,7 @@
 
 namespace appliance {
 
-/// The view's way along the arc from one angle to another, as a function of time. Whoever
+/// The view's way along the arc from one angle to another, as a function of time. The caller that
 /// interrupts a move starts the next one at angle(t): the view never jumps.
 ///
 /// RT       Every member is RT safe: arithmetic.

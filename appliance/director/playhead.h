@@ -35,9 +35,9 @@ class Playhead {
   /// Moves on to the picture @p to at the present rate. An instant in the past changes nothing.
   void advance(const Presentation& to, rt::Nanoseconds trigger_period) RT_SAFE;
 
-  /// Stays near @p wanted, the newest moment less a delay, which moves on by itself. One trigger
-  /// apart is right: @p wanted is looked at when a picture is decided, between two triggers. Two
-  /// clocks that drift apart cost one trigger now and then; it never goes back to keep near.
+  /// Stays near @p wanted, the newest moment less a delay, which moves on by itself. A distance of
+  /// one trigger is accepted, because a picture is decided between two triggers. If the two clocks
+  /// drift apart, the playhead skips or repeats one trigger from time to time; it never goes back.
   void keepNear(std::uint64_t wanted) RT_SAFE;
 
   [[nodiscard]] Rate rate() const RT_SAFE { return rate_; }

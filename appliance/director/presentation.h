@@ -16,10 +16,10 @@ struct Presentation {
   rt::Timestamp at;
   rt::Nanoseconds refresh{};  ///< from vblank to vblank; zero: no vblanks are known
 
-  /// More than a predicted vblank is off.
+  /// More than the error of a predicted vblank.
   static constexpr rt::Nanoseconds kSurelyPast = std::chrono::microseconds(200);
 
-  /// A commit before this would bring the picture on screen a vblank too early.
+  /// A commit before this would show the picture a vblank too early.
   [[nodiscard]] rt::Timestamp earliestCommit() const RT_SAFE { return at - refresh + kSurelyPast; }
 };
 

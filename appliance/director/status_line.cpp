@@ -56,7 +56,7 @@ Phrase comparisonOf(const Shot& shot) {
   return phrase<Word::kShownWithEarlier>(view, secondsOf(shot.second_earlier));
 }
 
-/// Why the picture is not what was asked for, and what is shown in its place.
+/// Why the picture is not the requested one, and what is shown instead.
 std::string badgeOf(const Shot& shot) {
   const std::string reason = textOf(reasonOf(shot));
   if (shot.camera_shown != shot.camera_wanted) {

@@ -20,7 +20,7 @@ class SteadyViews {
  public:
   static constexpr rt::Nanoseconds kProven = std::chrono::seconds(1);
 
-  /// Another stretch of time is played: what was learnt of the last one does not count.
+  /// Another stretch of time is played: forget what was learnt of the last one.
   void reset() RT_SAFE { views_ = {}; }
 
   /// Once for each view and picture.

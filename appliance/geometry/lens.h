@@ -21,7 +21,7 @@ using Point2 = std::array<double, 2>;
 /// turns over. Beyond it a source pixel would be drawn twice.
 ///
 /// RT      Not RT safe: thousands of evaluations, once per camera at start.
-/// Errors  0 for a model that folds at once or is not finite.
+/// Errors  0 for a model that folds at its centre or is not finite.
 [[nodiscard]] double maxRadius(const hal::Lens& lens, std::uint32_t width_px,
                                std::uint32_t height_px);
 

@@ -23,7 +23,7 @@ constexpr std::int64_t kNewestFormat = 2;
 constexpr double kRotationTolerance = 1e-4;
 constexpr std::int64_t kLargestSide_px = 16384;
 constexpr double kLargestFocal_px = 1e6;
-/// Everything a rig measures in metres; beyond it somebody wrote millimetres.
+/// The largest distance of a rig in metres; a larger number is probably in millimetres.
 constexpr double kLargestLength_m = 1000;
 constexpr NumberRange kLength = {-kLargestLength_m, kLargestLength_m, "m"};
 
@@ -95,7 +95,7 @@ void readColour(const TomlTable& table, hal::ColourModel& colour) {
   std::ranges::transform(terms, colour.vignetting.begin(), narrow);
 }
 
-/// Everywhere in the picture there is light to correct.
+/// Whether the correction leaves enough light everywhere in the picture.
 void checkVignetting(const TomlTable& table, const RigCamera& camera) {
   const hal::Lens& lens = camera.lens;
   const double far_x = std::max(lens.cx_px, camera.width_px - 1 - lens.cx_px);

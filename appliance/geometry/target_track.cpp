@@ -17,7 +17,7 @@ constexpr double kFurthest_m = 0.5;               // of a prediction from what w
 constexpr rt::Nanoseconds kForgotten = 2s;        // a prediction this old is a guess
 constexpr double kDeadBand_m = 0.005;
 
-// A reader that looks at the oldest entries must not be overtaken in the midst of its search.
+// A reader that looks at the oldest entries must not be overtaken while it searches.
 constexpr std::uint64_t kGuard = 64;
 
 double inSeconds(rt::Nanoseconds time) {

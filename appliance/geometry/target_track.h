@@ -15,9 +15,9 @@ namespace appliance {
 
 /// Where the target was over time: a ring of measured points, and the points that people set.
 ///
-/// Measurements and hand points are two boards with one writer each, so no writer waits for the
-/// other and none overwrites the other's word. A reader puts them together: what a person set
-/// wins within its range of instants (decision 0019).
+/// Measurements and points set by hand are two boards with one writer each, so no writer waits for
+/// the other or overwrites it. A reader combines them: a point set by hand wins within its range of
+/// instants (decision 0019).
 ///
 /// Threads  measure(), revise(): the measuring thread. setByHand(), release(): the thread that
 ///          carries out commands. Readers: any thread, a TargetReader each.

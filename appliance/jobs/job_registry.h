@@ -23,8 +23,8 @@ struct JobOrder {
   std::unique_ptr<JobWork> work;
 };
 
-/// The long work of the box: what runs, and what the last ones came to. Pure: works are polled by
-/// look(), and no clock is read.
+/// The long work of the box: which jobs run, and how the last ones ended. Pure: look() polls the
+/// works and reads no clock.
 ///
 /// Threads  main.
 /// Memory   At most kMostRunning works, and the reports of the last kMostKept that ended.

@@ -16,8 +16,7 @@ namespace appliance {
 /// A work on a thread of its own, `job`: SCHED_OTHER, so that it never delays a picture.
 ///
 /// Threads  The body: `job`. It looks at its stop token often enough to end within a second.
-/// Errors   What the body cannot do is its error, one line. An exception is a failure with its
-/// words.
+/// Errors   A body that fails returns one line. An exception is a failure with its text.
 class JobThread final : public JobWork {
  public:
   class Progress {

@@ -38,15 +38,14 @@ struct Condition {
 /// its last line. No condition is silenced for good.
 ///
 /// Threads  main.
-/// Memory   Forgets a condition that has been over for kForgetAfter; with more than
-/// kMostRemembered,
-///          each one that is over.
+/// Memory   Forgets a condition that has been over for kForgetAfter; beyond kMostRemembered, each
+///          one that is over.
 class ConditionLog {
  public:
   /// Lines of one condition without a pause; then one each kRefill.
   static constexpr double kBurst = 6;
   static constexpr rt::Nanoseconds kRefill = std::chrono::seconds(10);
-  /// The same for all conditions together: a machine that writes texts without end.
+  /// The same for all conditions together, in case very many change all the time.
   static constexpr double kBurstOfAll = 100;
   static constexpr rt::Nanoseconds kRefillOfAll = std::chrono::seconds(1);
   static constexpr rt::Nanoseconds kForgetAfter = std::chrono::minutes(2);

@@ -24,7 +24,7 @@ struct FlickerReport {
   double after = 0;   ///< as it was shown
 };
 
-/// "the background varies by 21.3 %, shown by 0.2 %"
+/// "background brightness varies by 21.3 %, by 0.2 % after compensation"
 [[nodiscard]] std::string flickerText(const FlickerReport& report);
 
 /// Gives every picture the brightness that its camera's pictures have on average, so that lamps

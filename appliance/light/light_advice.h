@@ -7,9 +7,9 @@
 
 namespace appliance {
 
-/// Lamps on the mains flicker at twice its frequency, by a tenth (old fluorescent tubes with good
-/// ballasts) to all (cheap LEDs) of their light. What a camera sees of it follows from how long
-/// it looks and how often.
+/// What decides how much flicker a camera sees. Lamps on the mains flicker at twice its frequency,
+/// by a tenth (old fluorescent tubes with good ballasts) to all (cheap LEDs) of their light. The
+/// exposure and the rate decide how much of that the pictures keep.
 struct LightParameters {
   double mains_hz = 50;
   double rate_hz = 40;  ///< triggers
@@ -31,7 +31,7 @@ struct LightAdvice {
   double blur_mm = 0;             ///< at 20 m/s, a thrower's hand
   std::optional<double> blur_px;  ///< where the scale is known
   double even_exposure_us = 0;    ///< the shortest that keeps nothing: one lamp period
-  double even_blur_mm = 0;        ///< and its price
+  double even_blur_mm = 0;        ///< the motion blur that it costs
   bool even_fits = false;         ///< it blurs no more than kMostBlur_mm and fits the period
   /// In Hz, near rate_hz, with a beat of 0; the faster first.
   std::vector<double> steady_rates;

@@ -11,7 +11,7 @@
 namespace appliance {
 namespace {
 
-// As late as this the trigger gives a pulse up: shorter standstills cost nothing.
+// The trigger gives a pulse up that is this late; a shorter stall costs nothing.
 constexpr int kStallOfPeriod = 5;
 
 class MachinePart final : public Part {
@@ -27,7 +27,7 @@ class MachinePart final : public Part {
 
   [[nodiscard]] std::string_view name() const override { return "machine"; }
 
-  /// That a priority is refused is said of other threads already.
+  /// A refused priority is no remark here: other threads' remarks already say it.
   [[nodiscard]] std::expected<void, std::string> start() override {
     if (!probe_.start()) return {};
     for (std::size_t i = 0; i < probe_.cpus(); ++i) {

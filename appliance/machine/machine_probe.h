@@ -16,8 +16,8 @@
 
 namespace appliance {
 
-/// Notes when the machine itself stands still: a thread for each CPU, above all others, sleeps for
-/// a millisecond again and again and looks how late it wakes.
+/// Detects when the machine itself stands still. On each CPU a thread of the highest priority
+/// sleeps for one millisecond at a time and measures how late it wakes.
 ///
 /// Threads  start(), stop(), tryPop(), watches(): the owner. The figures: any.
 ///          The probes are `probe01`..`probeNN`, one for each CPU that the process may use.

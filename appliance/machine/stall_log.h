@@ -8,7 +8,7 @@
 
 namespace appliance {
 
-/// What the stalls of a run amount to, for people. Stalls of several CPUs that overlap are one:
+/// Sums up the stalls of a run for people. Overlapping stalls of several CPUs count as one, because
 /// the machine stood still once.
 ///
 /// Threads  One.

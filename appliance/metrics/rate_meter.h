@@ -6,8 +6,8 @@
 
 namespace appliance {
 
-/// How often a second something happens, from looks at its count: between two looks that are at
-/// least a second apart. Zero when nothing happened any more.
+/// How often per second something happens. Computed from its count at two polls that are at least a
+/// second apart. Zero if nothing happened between them.
 ///
 /// Threads  One.
 class RateMeter {

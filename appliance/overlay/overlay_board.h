@@ -21,8 +21,8 @@ struct OverlaySubject {
 };
 static_assert(std::is_trivially_copyable_v<OverlaySubject>, "crosses threads");
 
-/// Where the render thread says what it shows, and finds what to draw over it. Neither waits for
-/// the other: an overlay shows with the picture that follows it (decision 0018).
+/// The render thread publishes here what it shows and gets from here what to draw over it. Neither
+/// thread waits for the other: an overlay appears with the next picture (decision 0018).
 ///
 /// Threads  `render` writes the subject and rings; `ui` writes the overlay.
 /// Memory   Some 100 kB: three overlays.

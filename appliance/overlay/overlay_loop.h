@@ -14,9 +14,8 @@ namespace appliance {
 
 /// Makes the overlay whenever what it is about has changed. So far it is the status line.
 ///
-/// Threads  run(): the `ui` thread, which is not real-time. warning(): any other. On a busy box it
-/// lags behind the
-///          pictures and nothing waits for it.
+/// Threads  run(): the `ui` thread, which is not real-time. warning(): any other. On a busy box the
+///          overlay lags behind the pictures; nothing waits for it.
 class OverlayLoop {
  public:
   /// Both outlive this.
@@ -25,7 +24,7 @@ class OverlayLoop {
 
   void run(const std::stop_token& stop);
 
-  /// What the text lacks on this machine, in one line; empty where nothing. Any thread.
+  /// What text lacks on this machine, in one line; empty: nothing. Any thread.
   [[nodiscard]] std::string warning() const;
 
  private:

@@ -43,7 +43,7 @@ std::optional<PanelCommand> PanelController::onEvent(const hal::ButtonEvent& eve
     letGo(event.button);
     return std::nullopt;
   }
-  // A check that is due already stays so: quick presses must not put it off for ever.
+  // A check that is due already stays so: quick presses must not postpone it forever.
   if (!nextTime()) next_check_ = event.at + kRepeatEvery;
   down_[static_cast<std::size_t>(event.button)] = true;
   const Meaning& meaning = meaningOf(event.button);

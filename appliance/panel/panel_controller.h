@@ -19,13 +19,12 @@ struct PanelCommand {
 
 /// Turns the panel's contacts into commands: a pure state machine.
 ///
-/// A press acts at once, not its release. Step, delay and view keys repeat while held: after
-/// kRepeatAfter, then every kRepeatEvery. `live` held for kLongPress goes home, once. Only the key
-/// pressed last repeats or goes home, and only while it stays down. Keys held
-/// together have no meaning of their own: each press acts alone, so that a stuck key blocks
-/// no other. A second press of a key that is down already is bounce and ignored. A release that
-/// got lost is found by reading the contacts of all keys that are down, kRepeatEvery and before
-/// each repetition.
+/// A press acts immediately; its release does nothing. Step, delay and view keys repeat while held:
+/// after kRepeatAfter, then every kRepeatEvery. `live` held for kLongPress goes home, once. Only
+/// the key pressed last repeats or goes home, and only while it stays down. Keys held together have
+/// no meaning of their own: each press acts alone, so that a stuck key blocks no other. A second
+/// press of a key that is down already is bounce and ignored. A release that got lost is found by
+/// reading the contacts of all keys that are down, kRepeatEvery and before each repetition.
 ///
 /// Threads  One: the panel thread.
 /// RT       Not RT safe (the level is read from hardware).

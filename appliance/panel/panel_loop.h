@@ -11,10 +11,11 @@
 
 namespace appliance {
 
-/// Carries the panel: events and time to the controller, its commands on, the mode to the lamps.
+/// Connects the panel: passes its events and the time to the controller, the controller's commands
+/// on, and the mode to the lamps.
 ///
 /// Threads  run(): the `panel` thread. lost(): any thread.
-/// Errors   A panel that vanishes is told by lost(); the picture goes on without it.
+/// Errors   A panel that vanishes is reported by lost(); the picture goes on without it.
 class PanelLoop {
  public:
   using Give = std::function<void(const PanelCommand&)>;

@@ -8,9 +8,9 @@
 namespace appliance {
 namespace {
 
-// A still is taken of a mode's 10th picture: what came on screen with the mode has settled. A
-// picture's text comes with the one after it, so a stopped moment and a view of a sweep are kept
-// a little later than they begin.
+// A still is taken of a mode's 10th picture, when the change of mode has settled. A picture's text
+// comes one picture later, so the still of a stopped moment or of a view of a sweep is taken some
+// pictures after it begins.
 constexpr std::uint32_t kSettled = 10;
 constexpr std::uint32_t kFrozenSettled = 3;
 constexpr std::uint32_t kViewSettled = 2;

@@ -26,7 +26,7 @@ class LockedVblanks {
     return timing_.firstVblankAfter(trigger_edge + lead_ - half);
   }
 
-  /// A commit before this would bring the picture on screen a vblank too early.
+  /// A commit before this would show the picture a vblank too early.
   [[nodiscard]] rt::Timestamp earliestCommit(rt::Timestamp trigger_edge) const {
     return timing_.vblankAt(of(trigger_edge) - 1) + kSurelyPast;
   }

@@ -191,7 +191,8 @@ void addMaintenanceCommands(CLI::App& kagami, const ControlPlace& place) {
 
 void addControlCommands(CLI::App& kagami, const ControlPlace& place) {
   addPlaybackCommands(kagami, place);
-  CLI::App* status = kagami.add_subcommand("status", "What the box shows and how it is");
+  CLI::App* status =
+      kagami.add_subcommand("status", "Show what is on the screen and the state of every part");
   const auto as_json = std::make_shared<bool>(false);
   status->add_flag("--json", *as_json, "as one JSON object");
   status->callback([&place, as_json] { showStatus(place, *as_json); });

@@ -5,7 +5,7 @@
 
 namespace appliance {
 
-/// What a report says of many values. All zero without any: count tells.
+/// What a report says of many values. Without any value all are zero, the count, too.
 struct Distribution {
   std::size_t count = 0;
   double mean = 0;

@@ -24,7 +24,7 @@ struct GenlockReport {
     GenlockReason reason = GenlockReason::kNone;
   };
 
-  std::optional<GenlockState> state;  ///< at the end; nothing: the trace does not tell
+  std::optional<GenlockState> state;  ///< at the end; nothing: the trace does not say
   GenlockReason reason = GenlockReason::kNone;
   std::uint32_t vblanks_per_trigger = 0;
   std::optional<double> locked_after_s;  ///< from the first trigger edge; nothing: never

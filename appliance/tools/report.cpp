@@ -234,7 +234,7 @@ std::vector<std::string> whyInvalid(const ReportInput& input, const Report& repo
   std::vector<std::string> reasons;
   const auto& summary = input.trace.summary;
   if (!summary)
-    reasons.emplace_back("the trace was cut off: kagamid did not come to its end");
+    reasons.emplace_back("the trace is incomplete: kagamid did not shut down cleanly");
   else if (!summary->clean_stop)
     reasons.emplace_back("kagamid did not stop cleanly");
   if (summary && summary->trace_dropped > 0)

@@ -79,7 +79,7 @@ std::string traceOverview(const Trace& trace) {
   std::string overview = text.data();
   for (const std::string& line : run.degraded) overview += "degraded: " + line + "\n";
   if (!trace.summary)
-    overview += "cut off: kagamid did not come to its end\n";
+    overview += "incomplete: kagamid did not shut down cleanly\n";
   else if (trace.summary->trace_dropped > 0)
     overview += std::to_string(trace.summary->trace_dropped) + " records were lost\n";
   return overview;

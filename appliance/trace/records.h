@@ -41,7 +41,7 @@ struct FrameRecord {
   rt::Timestamp frame_ready;  ///< the frame stands in the history, readable
 };
 
-/// The last frame of a trigger arrived, by whichever thread completed the set.
+/// The last frame of a trigger arrived. The thread that completed the set writes it.
 struct SetRecord {
   std::uint64_t trigger = 0;
   rt::Timestamp set_complete;

@@ -27,7 +27,7 @@ struct Trace {
   std::vector<LoopbackRecord> loopbacks;
   std::vector<GenlockRecord> genlocks;
   std::vector<StallRecord> stalls;
-  std::optional<SummaryRecord> summary;  ///< nothing: the daemon did not come to its end
+  std::optional<SummaryRecord> summary;  ///< nothing: the daemon did not shut down cleanly
 };
 
 /// Any line of a trace.

@@ -39,7 +39,7 @@ inline constexpr auto kTable = std::to_array<Definition>({
 }
 
 /// Whether it is a remark in a backend's own words, "{note}": several may hold at the same time,
-/// and only their texts tell them apart.
+/// and they differ only by their texts.
 [[nodiscard]] constexpr bool isNote(Word word) {
   return englishOf(word) == "{note}";
 }

@@ -216,7 +216,7 @@ std::expected<std::unique_ptr<Camera>, std::string> openCamera(const CameraProfi
   if (!camera) {
     return fail("no answer (" + error.message() + "): check its cable, power and address");
   }
-  // A camera that another program controls opens all the same: to be looked at.
+  // A camera that another program controls can be opened, too, but only for reading.
   if (arv_gv_device_is_controller(ARV_GV_DEVICE(arv_camera_get_device(camera.get()))) == FALSE) {
     return fail("another program controls it: end that program");
   }

@@ -17,9 +17,9 @@ struct FeatureSetting {
   std::variant<std::string, std::int64_t, double> value;
   /// A camera without this feature is fine: it has nothing to switch off.
   bool optional = false;
-  /// Under which other firmware has the same feature in the same unit.
+  /// Other names of the same feature in the same unit, used by other firmware.
   std::vector<std::string> other_names = {};
-  /// Under which it may have something alike, in units that only its maker knows: never set.
+  /// Names of similar features in vendor units: reported, never set.
   std::vector<std::string> lookalikes = {};
 };
 
@@ -35,7 +35,7 @@ struct FeatureSetting {
     std::vector<FeatureSetting> settings, const std::function<bool(const std::string&)>& has);
 
 /// Cameras round to their own increments: what was read back counts as the same within 1 %
-/// (of the wish, or of 1 where the wish is smaller).
+/// (of the wanted value, or of 1 if that is smaller).
 [[nodiscard]] bool inForce(double wanted, double read_back);
 
 }  // namespace hal::aravis

@@ -21,8 +21,8 @@ struct PacketSize {
 /// Sizes to try: the asked one, then the usual ones below it, largest first.
 [[nodiscard]] std::vector<std::uint32_t> packetSizesBelow(std::uint32_t asked_bytes);
 
-/// The delay that keeps the camera's share of the uplink when its packets have another size: it
-/// goes with their bits on the wire.
+/// Scales the packet delay with the packet's size on the wire, so that the camera keeps its share
+/// of the uplink.
 [[nodiscard]] std::uint32_t delayForSize(const CameraProfile& profile, std::uint32_t bytes);
 
 /// Has the camera send test packets (GigE Vision: one datagram of the very size, never cut into
@@ -30,7 +30,7 @@ struct PacketSize {
 /// switches as well as on network cards. Call it before the stream is made: the camera
 /// streams to no receiver meanwhile. Some milliseconds; 0.2 s for every size that does not arrive.
 ///
-/// Where no size arrives the asked one stays, with a note: the camera may have no test packets.
+/// If no size arrives, the requested one stays, with a note: the camera may have no test packets.
 [[nodiscard]] PacketSize provePacketSize(ArvCamera* camera, const CameraProfile& profile);
 
 }  // namespace hal::aravis

@@ -169,7 +169,7 @@ std::expected<OpenedPanel, std::string> openButtonPanel(const PanelSettings& set
   for (const auto& [button, name] : kButtons) {
     if (opened.panel->isPressed(button))
       opened.notes.push_back("panel: the button " + std::string(name) +
-                             " is held or stuck: it counts again once it was released");
+                             " is held down or stuck: it is ignored until released");
   }
   return opened;
 }

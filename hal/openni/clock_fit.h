@@ -19,7 +19,7 @@ namespace hal::openni {
 /// Units    Stamps are microseconds of the sensor's clock, as OpenNI2 gives them.
 class ClockFit {
  public:
-  /// A stamp that runs backwards, or away from ours, starts the fit anew: the sensor restarted.
+  /// A stamp that runs backwards, or away from ours, starts the fit again: the sensor restarted.
   void add(std::uint64_t stamp_us, rt::Timestamp arrival);
 
   /// When a picture of that stamp arrives if nothing holds it up. Needs one add() before.

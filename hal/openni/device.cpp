@@ -21,7 +21,7 @@ namespace {
 namespace ni = ::openni;
 using namespace std::chrono_literals;
 
-// A recording's reader answers at once; after this it has come to its end.
+// A recording's reader answers immediately. If it has not after this, the recording has ended.
 constexpr rt::Nanoseconds kEndOfFile = 500ms;
 
 /// What OpenNI2 says of its last failure, on one line.
@@ -63,7 +63,7 @@ class GoneListener final : public ni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> gone_{false};
 };
 
-/// OpenNI2 tells fields of view and takes the optical axis for the middle.
+/// OpenNI2 reports fields of view and assumes that the optical axis is in the middle.
 DepthLens lensOf(const ni::VideoStream& stream) {
   const auto focal_px = [](std::uint32_t size, float field_of_view) {
     return 0.5 * size / std::tan(0.5 * static_cast<double>(field_of_view));
@@ -321,7 +321,7 @@ Device::Answer Device::next(rt::Nanoseconds timeout, DevicePair& pair) {
         streams.data(), made.facts.colour ? 2 : 1, &which, static_cast<int>(left_ms));
     if (status != ni::STATUS_OK) continue;
     Implementation::Picture picture{{}, rt::now()};
-    // Only after the wait: without a picture readFrame() would block for ever.
+    // Only after the wait: without a picture readFrame() would block forever.
     if (streams[static_cast<std::size_t>(which)]->readFrame(&picture.frame) != ni::STATUS_OK ||
         !picture.frame.isValid()) {
       continue;

@@ -32,7 +32,7 @@ struct DevicePair {
 
 /// OpenNI2 with one device open, depth registered to colour and neither mirrored.
 ///
-/// Lives in a process of its own: drivers may block for ever, crash, or lose a sensor for good.
+/// Lives in a process of its own: drivers may block forever, crash, or lose a sensor for good.
 ///
 /// Threads  One caller. OpenNI2's own threads fill its queues.
 /// Errors   open(): one line for a person.

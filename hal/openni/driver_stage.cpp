@@ -61,7 +61,7 @@ int linkAll(const fs::path& drivers, const fs::path& stage, std::error_code& fai
 }
 
 /// Locks the folder for this process and the program that it becomes: whatever ends them, the lock
-/// ends with them. False: it is somebody else's, or was swept away meanwhile.
+/// ends with them. False: another process has it, or it was removed meanwhile.
 bool tryTake(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY);  // exec must not close it
   std::error_code failed;

@@ -8,7 +8,7 @@ namespace hal::openni {
 
 /// A folder from which OpenNI2 loads the drivers of our choice.
 ///
-/// OpenNI2 looks for drivers beside its own library and nowhere else, and only for names that end
+/// OpenNI2 searches for drivers only in the folder of its own library, and only for names that end
 /// in ".so.0". So its library is copied into a folder of its own, with links to the driver of
 /// recordings and to everything in the configured folder. The process that uses it starts with
 /// this folder first in LD_LIBRARY_PATH. One that was killed leaves its folder behind; the next

@@ -28,7 +28,7 @@ DepthStatus FolderSensor::status() const {
 
 bool FolderSensor::readNext() {
   const auto& entries = recording_.entries();
-  // A folder without one picture that can be read ends, instead of being searched for ever.
+  // A folder without one picture that can be read ends, instead of being searched forever.
   for (std::size_t tried = 0; tried <= entries.size(); ++tried) {
     if (next_ == entries.size()) {
       if (!settings_.repeat) return false;

@@ -34,7 +34,7 @@ struct Options {
   bool jpeg = false;
 };
 
-/// Our own program anew, with the drivers of @p drivers; returns only where that fails.
+/// Starts this program again with the drivers of @p drivers; returns only if that fails.
 std::string becomeStaged(const std::string& drivers, char** argv) {
   auto stage = DriverStage::make(drivers);
   if (!stage) return stage.error();
@@ -43,7 +43,7 @@ std::string becomeStaged(const std::string& drivers, char** argv) {
   // By its own name: that is what `ps` shows.
   std::error_code failed;
   ::execv(std::filesystem::read_symlink("/proc/self/exe", failed).c_str(), argv);
-  return "depth sensor: kagami-depth cannot start itself anew";
+  return "depth sensor: kagami-depth cannot start itself again";
 }
 
 int work(const Options& options, const std::string& trouble) {

@@ -9,9 +9,9 @@
 namespace hal::openni {
 
 /// Writes into the header of a recording that OpenNI2 has just begun how many streams it has.
-/// OpenNI2's own thread puts there what it finds when it comes to it, which may be before all are
-/// attached, and corrects that at the end only: a recording without a clean end could then not be
-/// played (OpenNI2 2.2, OniRecorder.cpp: attachStream() and onInitialize()).
+/// OpenNI2's own thread writes the number of streams that it knows when it starts, possibly before
+/// all are attached, and corrects it only at the end. Without this a recording without a clean end
+/// could not be played (OpenNI2 2.2, OniRecorder.cpp: attachStream() and onInitialize()).
 ///
 /// Waits up to @p patience for the header. Errors: one line that begins with the path.
 [[nodiscard]] std::expected<void, std::string> writeStreamCount(const std::string& path,

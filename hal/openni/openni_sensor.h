@@ -26,11 +26,11 @@ struct SensorOptions {
 /// A sensor, or a recording of one, through OpenNI2.
 ///
 /// OpenNI2 and its drivers run in a process of their own, kagami-depth: a driver that blocks,
-/// crashes or loses its sensor for good costs that process, and a new one begins afresh. A sensor
+/// crashes or loses its sensor for good costs that process, and a new one starts. A sensor
 /// that says nothing for a second is taken for lost.
 ///
 /// Threads  waitFrame(): one caller. status(): any.
-/// Errors   open(): never fails for want of a sensor; that is told by status().
+/// Errors   open(): never fails because there is no sensor; status() reports that.
 class OpenniSensor final : public DepthSensor {
  public:
   [[nodiscard]] static std::expected<std::unique_ptr<OpenniSensor>, std::string> open(

@@ -117,7 +117,7 @@ int fail(int socket, const std::string& why, bool unplugged = false) {
   return 1;
 }
 
-/// Waits for a device as long as there is a supervisor. Signs of life tell the supervisor that
+/// Waits for a device as long as there is a supervisor. Signs of life show the supervisor that
 /// the driver still looks for it.
 bool waitForDevice(int socket, const std::string& source) {
   bool told = false;
@@ -181,7 +181,7 @@ int stream(int socket, Device& device, Slots& slots) {
         break;
     }
     auto slot = slots.tryFill(pair);
-    // A recording waits for its reader; live, what nobody takes is lost and shows in the numbers.
+    // A recording waits for its reader; live, a picture that no reader takes is lost and counted.
     while (!slot && device.facts().recording) {
       if (!listen(socket, slots, kTurn)) return 0;
       slot = slots.tryFill(pair);

@@ -60,7 +60,7 @@ struct BoostRing {
   boost::lockfree::spsc_queue<T, boost::lockfree::capacity<kCapacity>> ring;
 };
 
-/// Bursts, as the trace's rings are filled and emptied; kBurst 1: every value at once.
+/// Bursts, as the trace's rings are filled and emptied; kBurst 1: every value immediately.
 template <typename Ring, typename T, int kBurst>
 void oneThread(benchmark::State& state) {
   const auto ring = std::make_unique<Ring>();

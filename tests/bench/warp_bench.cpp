@@ -42,7 +42,7 @@ struct Scene {
     plan.lens = {1180, 1180, 639.5, 511.5, {-0.1, 0.02, 1e-3, 1e-3, 0}, 2};
   }
 
-  /// Two cameras beside each other, each frame loaded anew, as in a live comparison.
+  /// Two cameras beside each other, each frame loaded again, as in a live comparison.
   [[nodiscard]] hal::Scene sideBySide() const {
     hal::Scene both = picture;
     both.count = 2;

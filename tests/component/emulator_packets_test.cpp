@@ -102,7 +102,7 @@ TEST(EmulatorPackets, CarryThePictureWithWhatIsLaidOverIt) {
                                 .payload_per_packet = payload,
                                 .picture = scene.picture()};
         EXPECT_EQ(sendAndReceive(frame, at_once, faults), scene.seen())
-            << "payload " << payload << ", " << at_once << " at once, in order " << in_order;
+            << "payload " << payload << ", " << at_once << " together, in order " << in_order;
       }
     }
   }

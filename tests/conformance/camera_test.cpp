@@ -95,7 +95,7 @@ class CameraConformance : public testing::TestWithParam<MakeRig> {
     for (std::size_t i = 0; i < frames; ++i) {
       const std::size_t before = recorder.arrivals().size();
       rig_->fire();
-      ASSERT_TRUE(recorder.waitFor(before + 1)) << "trigger " << i + 1 << " brought no frame";
+      ASSERT_TRUE(recorder.waitFor(before + 1)) << "trigger " << i + 1 << " delivered no frame";
     }
   }
 

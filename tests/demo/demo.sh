@@ -321,7 +321,7 @@ processor_time() {
   awk '$1 == "cpu" { all = 0; for (i = 2; i <= 9; ++i) all += $i; print all, $5 + $6, $9 }' /proc/stat
 }
 
-# What the machine was like meanwhile, so that a reader can tell a bad hour of it from a bad build.
+# What the machine was like meanwhile, so that a reader can distinguish a bad hour of it from a bad build.
 tell_of_machine() {  # PROCESSOR-TIME-BEFORE EMULATOR-STATISTICS
   printf '%s\n%s\n' "$1" "$(processor_time)" | awk -v statistics="$2" '
     NR == 1 { all = $1; idle = $2; taken = $3 }

@@ -1,4 +1,4 @@
-// The product's own trigger loop, pacer and screen on true page flips. In virtual time nothing but
+// The product's own trigger loop, pacer and screen on true page flips. In virtual time only
 // our own logic can be late.
 
 #include <algorithm>

@@ -189,7 +189,7 @@ TEST(GpioPanel, NamesAButtonHeldAtBootAndReportsOnlyItsRelease) {
   sim.contact(Button::kFreeze, true);
   const auto panel = opened();
   ASSERT_TRUE(panel.panel);
-  EXPECT_THAT(panel.notes, Contains(HasSubstr("the button freeze is held or stuck")));
+  EXPECT_THAT(panel.notes, Contains(HasSubstr("the button freeze is held down or stuck")));
   EXPECT_TRUE(panel.panel->isPressed(Button::kFreeze));
   EXPECT_FALSE(panel.panel->waitEvent(300ms)) << "it was not pressed";
   sim.contact(Button::kFreeze, false);

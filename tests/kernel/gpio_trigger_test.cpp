@@ -224,7 +224,7 @@ TEST(TriggerLoop, PulsesOnTheRightLineWithPeriodAndWidthExact) {
   }
   std::printf("%zu pulses: off the grid by at most %ld ns, off the width by at most %ld ns\n",
               events.size() / 2, worst_period_ns, worst_width_ns);
-  // Virtual time costs nothing but the readings of the clock themselves.
+  // In virtual time only the readings of the clock themselves take time.
   EXPECT_LE(worst_period_ns, 1000);
   EXPECT_LE(worst_width_ns, 1000);
 }

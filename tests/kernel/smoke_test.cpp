@@ -1,4 +1,4 @@
-// What every other test of this tier builds upon.
+// What every other test of this tier needs.
 
 #include <chrono>
 #include <filesystem>

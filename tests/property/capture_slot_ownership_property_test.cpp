@@ -44,7 +44,7 @@ RC_GTEST_PROP(SlotOwnership, NoSlotLeaksNorIsFilledTwiceHoweverOftenTheStreamEnd
   for (int step = 0; step < steps; ++step) {
     switch (*rc::gen::inRange(0, 5)) {
       case 0:
-      case 1: {  // one of the filling frames is complete; triggers between may bring none
+      case 1: {  // one of the filling frames is complete; triggers between may deliver none
         trigger += *rc::gen::inRange<std::uint64_t>(1, 4);
         const auto at = *rc::gen::inRange<std::size_t>(0, stream.in_hand.size());
         stream.in_hand[at] = frames.store(stream.in_hand[at], {.trigger = trigger});
@@ -58,7 +58,7 @@ RC_GTEST_PROP(SlotOwnership, NoSlotLeaksNorIsFilledTwiceHoweverOftenTheStreamEnd
         }
         break;
       }
-      case 4:  // the stream ends in the midst of any frames, and another begins
+      case 4:  // the stream ends amid any frames, and another begins
         stream = Stream(frames);
         break;
       default:  // a frame that is not stored is filled over: nothing moves

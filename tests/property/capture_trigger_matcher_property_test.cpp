@@ -170,8 +170,8 @@ RC_GTEST_PROP(TriggerMatcher, NeverNamesAFrameWrongly, ()) {
 }
 
 RC_GTEST_PROP(TriggerMatcher, NeverNamesAFrameWronglyWhereTheCameraHasNoClock, ()) {
-  // Ids and arrivals alone cannot tell an extra frame from a trigger's own, nor a jump of the ids
-  // from lost frames: such a camera is believed what it counts.
+  // Ids and arrivals alone cannot distinguish an extra frame from a trigger's own, nor a jump of
+  // the ids from lost frames: such a camera is believed what it counts.
   Model model(false, 0);
   auto steps = *anyFaults();
   std::erase_if(steps, [](const Step& step) {

@@ -34,7 +34,7 @@ class LossyHistory : public StoredViews {
     frames_[camera].erase(frames_[camera].begin(),
                           frames_[camera].lower_bound(trigger > kSets ? trigger - kSets + 1 : 1));
   }
-  /// As the render thread does after each decision; what nobody has any more cannot be held.
+  /// As the render thread does after each decision; a frame that is gone cannot be held.
   void hold(std::uint64_t trigger) {
     if (trigger == held_) return;
     std::set<std::uint32_t> holders;

@@ -290,7 +290,7 @@ std::vector<std::string> Run::conclude() {
 void Run::noteWhatIsBad(const Judgement& judgement) {
   if (!records_.unreadable.empty()) note(records_.unreadable);
   if (!records_.summary) {
-    note("kagamid did not come to its end: its trace has no summary");
+    note("kagamid did not shut down cleanly: its trace has no summary");
   } else if (records_.summary->trace_dropped > 0) {
     note("the trace lost " + std::to_string(records_.summary->trace_dropped) + " records");
   }

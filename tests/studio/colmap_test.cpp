@@ -116,11 +116,11 @@ TEST(Colmap, FindsTheCamerasWhereTheTruthSaysTheyAre) {
   ASSERT_NO_FATAL_FAILURE(run(colmap, folder.path(),
                               {"exhaustive_matcher", "--database_path", database,
                                "--SiftMatching.use_gpu", "0", "--SiftMatching.num_threads", "1"}));
-  // Two or three pictures cannot tell a bent lens from a bent scene, nor a long one from a scene
-  // farther off: while pictures join one by one the lens stays as the data sheet has it. The first
-  // two are of the middle, two steps apart. Left to itself the mapper likes pairs with a wide base
-  // best, and the outer views share no more than a piece of wall: a plane, which two views explain
-  // in two ways.
+  // Two or three pictures cannot distinguish a bent lens from a bent scene, nor a long one from a
+  // scene farther off: while pictures join one by one the lens stays as the data sheet has it. The
+  // first two are of the middle, two steps apart. Left to itself the mapper likes pairs with a wide
+  // base best, and the outer views share no more than a piece of wall: a plane, which two views
+  // explain in two ways.
   ASSERT_NO_FATAL_FAILURE(
       run(colmap, folder.path(),
           {"mapper", "--database_path", database, "--image_path", pictures, "--output_path",
@@ -134,7 +134,7 @@ TEST(Colmap, FindsTheCamerasWhereTheTruthSaysTheyAre) {
          "--BundleAdjustment.refine_principal_point", "1", "--BundleAdjustment.max_num_iterations",
          "200"});
   };
-  // All twenty together tell the lens, and where in the sensor it looks. Each round finds the
+  // All twenty together determine the lens, and where in the sensor it looks. Each round finds the
   // matches again that the lens of the round before had called wrong. What is right fits to 0.2
   // pixels: as the lens gets better, a pixel is left to those who would bend it.
   ASSERT_NO_FATAL_FAILURE(adjust());
@@ -161,7 +161,7 @@ TEST(Colmap, FindsTheCamerasWhereTheTruthSaysTheyAre) {
     found.col(c) = centres.at(rig.cameras[c].model.name + ".png");
     wanted.col(c) = rig.cameras[c].centre();
   }
-  // Pictures alone tell neither size nor place nor direction of the whole.
+  // Pictures alone determine neither size nor place nor direction of the whole.
   const Eigen::Matrix4d to_rig = Eigen::umeyama(found, wanted, /*with_scaling=*/true);
   const Eigen::Matrix3Xd away =
       (to_rig.topLeftCorner<3, 3>() * found).colwise() + to_rig.topRightCorner<3, 1>() - wanted;

@@ -40,7 +40,7 @@ class SimulatedScreen {
     return number;
   }
 
-  /// As the kernel would tell it.
+  /// As the kernel would report it.
   [[nodiscard]] hal::PageFlip flip(std::uint64_t picture_id, std::uint64_t number) {
     const rt::Nanoseconds error{std::llround(rms_ * jitter_ns_(random_))};
     return {.picture_id = picture_id, .page_flip = truly(number) + error, .vblank = number};

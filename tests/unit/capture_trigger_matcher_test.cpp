@@ -247,7 +247,7 @@ TEST_F(TriggerMatcherTest, TakesTheNearestTriggerOfACameraThatRunsFree) {
 TEST_F(TriggerMatcherTest, NamesAFrameWhoseTriggersEdgeIsNotKnownWell) {
   settle();
   for (int i = 0; i < 5; ++i) {
-    // The trigger loop was stopped for 6 ms while it drove the line: the edge left at once.
+    // The trigger loop was stopped for 6 ms while it drove the line: the edge left immediately.
     ++trigger_;
     edges_->post(trigger_, edge(trigger_) + 3ms, 3ms);
     clock_ += kPeriod;

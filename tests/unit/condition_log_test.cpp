@@ -58,7 +58,7 @@ TEST_F(Journal, SumsAConditionThatComesAndGoesAllTheTime) {
   EXPECT_GE(lines.size(), 10u);
   EXPECT_LE(lines.size(), 13u);  // six at first, then one each ten seconds
   EXPECT_THAT(lines.back().text, HasSubstr("times since the last line)"));
-  // The end is told, however late.
+  // The end is reported, however late.
   const auto last = at(120'000, {});
   for (const JournalLine& line : last) EXPECT_THAT(line.text, HasSubstr("over now"));
   EXPECT_THAT(at(240'000, {}), IsEmpty());

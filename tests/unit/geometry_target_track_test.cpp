@@ -109,7 +109,7 @@ TEST(TargetTrack, TheLaterOfTwoPointsSetByHandWinsFromItsMomentOn) {
   track.setByHand({2, 0, 0}, at(2s));
   EXPECT_EQ(reader.at(at(1500ms)).point.x_m, 1);
   EXPECT_EQ(reader.at(at(2500ms)).point.x_m, 2);
-  track.setByHand({3, 0, 0}, at(1200ms));  // somebody went back to an earlier moment
+  track.setByHand({3, 0, 0}, at(1200ms));  // a person went back to an earlier moment
   EXPECT_EQ(reader.at(at(1100ms)).point.x_m, 1);
   EXPECT_EQ(reader.at(at(1500ms)).point.x_m, 3);
   EXPECT_EQ(reader.at(at(2500ms)).point.x_m, 3);

@@ -23,7 +23,7 @@ class AtomicRequest {
 
   /// Would the driver do it? Changes nothing. @p modeset: the screen may go dark for it.
   [[nodiscard]] Outcome test(int fd, bool modeset) const;
-  /// Returns at once; a flip event that carries @p serial comes when it has happened.
+  /// Returns immediately; a flip event that carries @p serial comes when it has happened.
   [[nodiscard]] Outcome submit(int fd, bool modeset, std::uint64_t serial) const;
   /// Returns when it has happened.
   [[nodiscard]] Outcome carryOut(int fd, bool modeset) const;

@@ -11,7 +11,7 @@
 
 namespace ui::kms {
 
-/// A page flip as the kernel tells it.
+/// A page flip as the kernel reports it.
 struct FlipEvent {
   std::uint64_t serial;    ///< of AtomicRequest::submit()
   std::uint32_t sequence;  ///< the vblank's number; wraps
@@ -35,7 +35,7 @@ class Device {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::string& driver() const { return driver_; }
 
-  /// Whether we are master now; an errno where not: EBUSY somebody else is, EACCES may not.
+  /// Whether we are master now. If not, an errno: EBUSY: another program is; EACCES: not permitted.
   [[nodiscard]] std::expected<void, int> tryTakeMaster() const;
   void dropMaster() const;
 

@@ -11,7 +11,7 @@ namespace ui::kms {
 /// the kernel itself, so that it works without the udev daemon.
 ///
 /// Threads  One.
-/// Errors   Where listening is not permitted it stays deaf: looking now and then must do.
+/// Errors   If listening is not permitted, it reports nothing: the caller must poll.
 class HotplugMonitor {
  public:
   HotplugMonitor();

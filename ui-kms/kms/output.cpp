@@ -156,7 +156,7 @@ void Output::addDesirable(AtomicRequest& request) const {
   }
 }
 
-/// The first of two requests that the driver would carry out: with what is only desirable, or
+/// The first of two requests that the driver would carry out: with the optional properties, or
 /// without.
 std::expected<AtomicRequest, int> Output::lightingRequest(const drmModeModeInfo& mode,
                                                           std::uint32_t mode_blob,

@@ -32,12 +32,13 @@ class Output {
 
   [[nodiscard]] const Connector& connector() const { return connector_; }
 
-  /// Would the driver set @p mode, be it without what is only desirable? Changes nothing.
+  /// Whether the driver would set @p mode, at least without the optional properties. Changes
+  /// nothing.
   [[nodiscard]] AtomicRequest::Outcome tryLight(const drmModeModeInfo& mode) const;
 
   /// Sets @p mode and shows @p framebuffer, which has that mode's size; otherwise as flip().
-  /// Tested first. What is only desirable (content type, colour range, underscan) is left out where
-  /// the driver refuses the whole with it. Undoes what another program left behind.
+  /// Tested first. Optional properties (content type, colour range, underscan) are left out if the
+  /// driver refuses the whole with them. Resets what another program left behind.
   [[nodiscard]] AtomicRequest::Outcome light(const drmModeModeInfo& mode, std::uint32_t framebuffer,
                                              int fence, std::uint64_t serial) const;
 
@@ -46,10 +47,11 @@ class Output {
   [[nodiscard]] AtomicRequest::Outcome flip(std::uint32_t framebuffer, int fence,
                                             std::uint64_t serial) const;
 
-  /// Switches the screen off, so that the next light() trains its link anew. Waits for it.
+  /// Switches the screen off, so that the next light() trains its link again. Waits for it.
   [[nodiscard]] AtomicRequest::Outcome darken() const;
 
-  /// The last vblank. None: the driver tells none; then flips happen at once and carry no number.
+  /// The last vblank. None: the driver reports none; flips then happen immediately, without a
+  /// number.
   [[nodiscard]] std::optional<Vblank> lastVblank() const;
   [[nodiscard]] bool takesFences() const { return fence_property_ != 0; }
 

@@ -65,7 +65,7 @@ class Screen {
 
   /// Shows @p framebuffer, of the mode's size, from the next vblank on, and sets the mode where
   /// that is due. The flip carries @p serial. @p fence: as Output::flip().
-  /// Errors: kBusy, try again; kDeviceLost, attend() and draw anew.
+  /// Errors: kBusy, try again; kDeviceLost, attend() and draw again.
   [[nodiscard]] rt::Result<void> show(std::uint32_t framebuffer, int fence, std::uint64_t serial,
                                       rt::Timestamp now);
 

@@ -26,7 +26,7 @@ ScreenMachine::Task ScreenMachine::next(rt::Timestamp now) {
 
 void ScreenMachine::onMaster(bool held, rt::Timestamp now) {
   master_ = held;
-  hotplug_ = held;  // what was seen before somebody else had the screen counts no more
+  hotplug_ = held;  // what was seen before another program had the screen no longer counts
   next_ = now + kPoll;
 }
 

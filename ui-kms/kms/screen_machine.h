@@ -7,7 +7,7 @@
 
 namespace ui::kms {
 
-/// What a look at the connectors found.
+/// What a search of the connectors found.
 struct Sight {
   bool usable = false;     ///< a screen with at least one mode is connected
   bool unchanged = false;  ///< the screen and mode that are lit are still the choice

@@ -101,7 +101,7 @@ Status Camera::readRegisters(std::span<const std::uint8_t> addresses, bool may_r
                              gvcp::Answer& answer) const {
   for (std::size_t at = 0; at < addresses.size(); at += 4) {
     const std::uint32_t address = loadBe32(&addresses[at]);
-    // Anybody may ask whether the camera is taken, and by whom.
+    // Any program may ask whether the camera is controlled, and by which program.
     if (address == reg::kControlPrivilege) {
       answer.append32(control_.privilege());
       continue;

@@ -175,7 +175,7 @@ void onEveryCore(std::size_t count, const std::function<void(std::size_t)>& work
   }
 }
 
-/// Rays scatter; what they bring back from far is smooth.
+/// Rays scatter; the light that they gather far away is smooth.
 void smooth(LightMap& map, const LightMap::Place& place, int reach) {
   const std::vector<Vector4f> before = [&] {
     std::vector<Vector4f> copy;

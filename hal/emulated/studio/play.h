@@ -39,8 +39,8 @@ class Play {
   [[nodiscard]] const StudioRig& rig() const;
   /// Moments of the whole scene.
   [[nodiscard]] std::uint32_t momentCount() const;
-  /// The first so many can be shown, whole rounds of a hall's variants; with StudioOptions::only,
-  /// so many of those.
+  /// Number of moments ready to show, in whole rounds of a hall's variants. With
+  /// StudioOptions::only: of the chosen moments.
   [[nodiscard]] std::uint32_t readyCount() const;
   /// What a camera sees of a moment that is ready, over its empty hall. It stays where it is.
   [[nodiscard]] const Overlay& overlay(std::uint32_t moment, std::uint32_t camera) const;

@@ -59,7 +59,8 @@ std::string StudioScene::cameraName(std::uint32_t camera) const {
 }
 
 std::uint32_t StudioScene::momentOf(std::uint64_t trigger) {
-  // A frame that no trigger asked for, or one of a round that is over, shows something; so be it.
+  // A frame that no trigger asked for, or one of a round that is over, shows any moment; this is
+  // accepted.
   if (trigger < round_.first_trigger) return static_cast<std::uint32_t>(trigger % round_.moments);
   const std::uint64_t passed = trigger - round_.first_trigger;
   if (passed < round_.moments) return static_cast<std::uint32_t>(passed);

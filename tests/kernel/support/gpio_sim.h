@@ -27,7 +27,7 @@ class GpioSim {
   /// The line's attributes ("pull", "value"), for programs that work them themselves.
   [[nodiscard]] std::string lineFolder(const std::string& line) const;
 
-  /// The chip vanishes, as when its plug is pulled; nothing but the destructor is left to call.
+  /// The chip vanishes, as when its plug is pulled; only the destructor may be called then.
   void remove();
 
  private:
