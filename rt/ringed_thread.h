@@ -5,8 +5,8 @@
 
 namespace rt {
 
-/// A thread that waits for a doorbell. Whoever stops it must ring, or the thread sees its stop
-/// token only when something else rings; stop() does both.
+/// A thread that waits for a doorbell. Stopping it includes ringing: otherwise the thread sees its
+/// stop token only when something else rings; stop() does both.
 ///
 /// Threads  The owner's, as rt::Thread.
 class RingedThread {

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "appliance/words/phrase.h"
 #include "hal/backends.h"
 
 namespace appliance {
@@ -107,19 +108,16 @@ std::expected<std::string, std::string> writeDepthSnapshot(
   std::string size;
   rt::Timestamp patient_until = rt::now() + order.patience;
   for (std::uint32_t written = 0;;) {
-    const std::string so_far =
-        std::to_string(written) + " of " + std::to_string(order.pairs) + " pairs";
-    if (stop.stop_requested()) return "cancelled after " + so_far + ": nothing was kept";
+    if (stop.stop_requested())
+      return textOf(phrase<Word::kSnapshotCancelled>(written, order.pairs));
     if (written == order.pairs) break;
     const auto pair = source.next(std::min(rt::now() + kLook, patient_until));
     if (!pair && rt::now() < patient_until) continue;
-    if (!pair)
-      return std::unexpected("no picture came from the depth sensor after " + so_far +
-                             ": see kagami status");
+    if (!pair) return std::unexpected(textOf(phrase<Word::kSnapshotStarved>(written, order.pairs)));
     if (written == 0) size = sizeOf(pair->picture);
     if (sizeOf(pair->picture) != size)
-      return std::unexpected("the sensor's pictures changed from " + size + " to " +
-                             sizeOf(pair->picture) + " after " + so_far + ": try again");
+      return std::unexpected(
+          textOf(phrase<Word::kSnapshotSize>(size, sizeOf(pair->picture), written, order.pairs)));
     const auto done =
         recorder->write(frameOf(*pair, numbers.of(pair->picture.sensor_number)), order.sensor);
     if (!done) return std::unexpected(done.error());

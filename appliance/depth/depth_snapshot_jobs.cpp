@@ -29,13 +29,11 @@ const auto kTable = std::to_array<sd_bus_vtable>({
 
 }  // namespace
 
-std::expected<JobId, std::string> DepthSnapshotJobs::start(std::uint32_t pairs,
-                                                           std::string caller) {
+std::expected<JobId, Phrase> DepthSnapshotJobs::start(std::uint32_t pairs, std::string caller) {
   if (pairs < 1 || pairs > kMostPairs)
-    return std::unexpected("a snapshot holds 1 to " + std::to_string(kMostPairs) + " pairs");
+    return std::unexpected(phrase<Word::kSnapshotPairs>(kMostPairs));
   const JobRegistry::Job* last = parts_.jobs.find(last_);
-  if (last != nullptr && last->work)
-    return std::unexpected("a snapshot is being written: wait until it has ended, or cancel it");
+  if (last != nullptr && last->work) return std::unexpected(phrase<Word::kSnapshotRuns>());
   const DepthSnapshotOrder order{
       .folder = snapshotFolder(parts_.parent), .sensor = parts_.sensor_name(), .pairs = pairs};
   auto work = JobThread::start(

@@ -10,6 +10,7 @@
 #include "appliance/control/bus_object.h"
 #include "appliance/depth/depth_reader.h"
 #include "appliance/jobs/job_registry.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -32,8 +33,8 @@ class DepthSnapshotJobs {
   DepthSnapshotJobs& operator=(const DepthSnapshotJobs&) = delete;
 
   /// The job is cancelled when @p caller leaves the bus.
-  /// Errors  One line: the number of pairs, or what runs already.
-  [[nodiscard]] std::expected<JobId, std::string> start(std::uint32_t pairs, std::string caller);
+  /// Errors  The number of pairs, or what runs already.
+  [[nodiscard]] std::expected<JobId, Phrase> start(std::uint32_t pairs, std::string caller);
 
   [[nodiscard]] BusObject busObject();
 

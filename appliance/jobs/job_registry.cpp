@@ -4,13 +4,10 @@
 #include <ranges>
 #include <utility>
 
-#include "appliance/words/phrase.h"
-
 namespace appliance {
 
-std::expected<JobId, std::string> JobRegistry::start(JobOrder order) {
-  if (running() >= kMostRunning)
-    return std::unexpected(withId(phrase<Word::kTooManyJobs>(kMostRunning)));
+std::expected<JobId, Phrase> JobRegistry::start(JobOrder order) {
+  if (running() >= kMostRunning) return std::unexpected(phrase<Word::kTooManyJobs>(kMostRunning));
   const JobId id = ++last_;
   JobReport report = order.work->report();
   jobs_.emplace(id, Job{.kind = std::move(order.kind),

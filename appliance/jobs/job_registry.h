@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "appliance/jobs/job_work.h"
+#include "appliance/words/phrase.h"
 
 namespace appliance {
 
@@ -48,8 +49,8 @@ class JobRegistry {
     friend bool operator==(const Changes&, const Changes&) = default;
   };
 
-  /// Errors   One line: too many run.
-  [[nodiscard]] std::expected<JobId, std::string> start(JobOrder order);
+  /// Errors   Too many run.
+  [[nodiscard]] std::expected<JobId, Phrase> start(JobOrder order);
 
   /// False if there is no such job. A job that has ended stays as it ended.
   bool cancel(JobId id);

@@ -3,17 +3,15 @@
 #include <exception>
 #include <utility>
 
-#include "appliance/words/phrase.h"
-
 namespace appliance {
 
-std::expected<std::unique_ptr<JobThread>, std::string> JobThread::start(Body body) {
+std::expected<std::unique_ptr<JobThread>, Phrase> JobThread::start(Body body) {
   std::unique_ptr<JobThread> job(new JobThread);
   JobThread& made = *job;
   auto thread = rt::Thread::start(
       {.name = "job"},
       [&made, body = std::move(body)](const std::stop_token& stop) { made.run(body, stop); });
-  if (!thread) return std::unexpected(withId(phrase<Word::kJobThread>(thread.error().where)));
+  if (!thread) return std::unexpected(phrase<Word::kJobThread>(thread.error().where));
   job->thread_ = std::move(*thread);
   return job;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "appliance/jobs/job_work.h"
+#include "appliance/words/phrase.h"
 #include "rt/thread.h"
 
 namespace appliance {
@@ -31,7 +32,7 @@ class JobThread final : public JobWork {
   using Result = std::expected<std::string, std::string>;
   using Body = std::function<Result(Progress&, const std::stop_token&)>;
 
-  [[nodiscard]] static std::expected<std::unique_ptr<JobThread>, std::string> start(Body body);
+  [[nodiscard]] static std::expected<std::unique_ptr<JobThread>, Phrase> start(Body body);
 
   [[nodiscard]] JobReport report() const override;
   void cancel() override { thread_.requestStop(); }

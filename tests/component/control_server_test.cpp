@@ -227,7 +227,7 @@ TEST_F(ControlInterface, AJobIsAnObjectThatCanBeReadAndCancelled) {
         while (!stop.stop_requested()) std::this_thread::yield();
         return std::expected<std::string, std::string>("seen the half");
       });
-  ASSERT_TRUE(work.has_value()) << work.error();
+  ASSERT_TRUE(work.has_value()) << textOf(work.error());
   ASSERT_TRUE(jobs_.start({.kind = "check", .owner = "", .work = std::move(*work)}).has_value());
   daemon_.emplace(bus_.address(), box_, jobs_);
   ASSERT_TRUE(daemon_->waitUntilConnected()) << daemon_->trouble();

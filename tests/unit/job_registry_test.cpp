@@ -94,7 +94,7 @@ TEST(JobRegistry, RefusesMoreThanItCanRun) {
   std::array<Hand, JobRegistry::kMostRunning> hands;
   for (Hand& hand : hands) EXPECT_TRUE(jobs.start(orderOf(hand)).has_value());
   Hand one_more;
-  EXPECT_THAT(jobs.start(orderOf(one_more)).error(), HasSubstr("wait for one of them"));
+  EXPECT_THAT(textOf(jobs.start(orderOf(one_more)).error()), HasSubstr("wait for one of them"));
   hands[0].report.state = JobState::kFailed;
   (void)jobs.look();
   EXPECT_TRUE(jobs.start(orderOf(one_more)).has_value());
@@ -121,7 +121,7 @@ TEST(JobThread, ReportsProgressAndResult) {
         progress.set(0.25);
         return std::expected<std::string, std::string>("seen");
       });
-  ASSERT_TRUE(work.has_value()) << work.error();
+  ASSERT_TRUE(work.has_value()) << textOf(work.error());
   ASSERT_TRUE(test::becomesTrue([&] { return (*work)->report().state == JobState::kDone; }));
   EXPECT_EQ((*work)->report().result, "seen");
   EXPECT_EQ((*work)->report().progress, 1);
@@ -133,7 +133,7 @@ TEST(JobThread, EndsEarlyWhenItIsCancelled) {
         while (!stop.stop_requested()) std::this_thread::yield();
         return std::expected<std::string, std::string>("half");
       });
-  ASSERT_TRUE(work.has_value()) << work.error();
+  ASSERT_TRUE(work.has_value()) << textOf(work.error());
   EXPECT_EQ((*work)->report().state, JobState::kRunning);
   (*work)->cancel();
   ASSERT_TRUE(test::becomesTrue([&] { return (*work)->report().state == JobState::kCancelled; }));
@@ -145,7 +145,7 @@ TEST(JobThread, AnExceptionIsAFailureWithItsWords) {
          const std::stop_token&) -> std::expected<std::string, std::string> {
         throw std::runtime_error("disk full");
       });
-  ASSERT_TRUE(work.has_value()) << work.error();
+  ASSERT_TRUE(work.has_value()) << textOf(work.error());
   ASSERT_TRUE(test::becomesTrue([&] { return (*work)->report().state == JobState::kFailed; }));
   EXPECT_THAT((*work)->report().result, HasSubstr("disk full"));
 }

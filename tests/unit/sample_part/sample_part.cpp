@@ -49,7 +49,7 @@ class SamplePart final : public Part {
 
   void reset() { turns_ = 0; }
   /// The job ends when the part has counted this many more.
-  [[nodiscard]] std::expected<JobId, std::string> count(std::uint32_t turns);
+  [[nodiscard]] std::expected<JobId, Phrase> count(std::uint32_t turns);
   [[nodiscard]] std::int64_t turns() const { return turns_.load(); }
 
  private:
@@ -66,7 +66,7 @@ class SamplePart final : public Part {
   rt::Thread thread_;
 };
 
-std::expected<JobId, std::string> SamplePart::count(std::uint32_t turns) {
+std::expected<JobId, Phrase> SamplePart::count(std::uint32_t turns) {
   auto work = JobThread::start([this, turns, begin = turns_.load()](JobThread::Progress& progress,
                                                                     const std::stop_token& stop) {
     for (std::int64_t done = 0; done < turns && !stop.stop_requested();) {
