@@ -1,1 +1,0 @@
-// See tests/CMakeLists.txt: carries the precompiled header of the tests.
