@@ -54,7 +54,8 @@ TEST(ControlRequests, AComparisonNeedsAKnownLayoutAndSomethingElseToShow) {
   now.history_ms = 5000;
   using appliance::requestCompare;
   EXPECT_THAT(textOf(requestCompare("beside", 3, 0, 0.5, now).error()), HasSubstr("side-by-side"));
-  EXPECT_THAT(textOf(requestCompare("ghost", 0, 0, 0.5, now).error()), HasSubstr("name another view"));
+  EXPECT_THAT(textOf(requestCompare("ghost", 0, 0, 0.5, now).error()),
+              HasSubstr("name another view"));
   EXPECT_THAT(textOf(requestCompare("ghost", 21, 0, 0.5, now).error()), HasSubstr("no view 21"));
   EXPECT_THAT(textOf(requestCompare("wipe", 0, 6000, 0.5, now).error()), HasSubstr("longer than"));
   for (const double share : {-0.1, 1.1, std::nan("")})
