@@ -48,7 +48,7 @@ TEST(JobRegistry, ReportsAJobFromItsBeginToItsEnd) {
   JobRegistry jobs;
   Hand hand;
   const auto id = jobs.start(orderOf(hand));
-  ASSERT_TRUE(id.has_value()) << id.error();
+  ASSERT_TRUE(id.has_value()) << textOf(id.error());
   EXPECT_THAT(jobs.look().begun, ElementsAre(*id));
   EXPECT_EQ(jobs.look(), JobRegistry::Changes{});
   hand.report.progress = 0.5;
