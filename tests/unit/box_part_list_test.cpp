@@ -117,8 +117,8 @@ TEST(PartList, StopsTheOthersAndNamesThePartThatHangs) {
     parts.add(std::make_unique<HangingPart>("stuck", log, release.get_future().share()));
     parts.add(std::make_unique<NotingPart>("c", log));
     ASSERT_TRUE(parts.start().has_value());
-    EXPECT_THAT(parts.stop(), ElementsAre("part stuck does not stop within 0.1 s: the process ends "
-                                          "without it"));
+    EXPECT_THAT(parts.stop(), ElementsAre("[part-hangs] part stuck does not stop within 0.1 s: the "
+                                          "process ends without it"));
     EXPECT_TRUE(parts.hung());
   }
   EXPECT_THAT(log, ElementsAre("start a", "start stuck", "start c", "stop c", "stop a", "destroy c",

@@ -55,7 +55,7 @@ TEST(Pattern, OfAnotherLanguageMayReorderItsPlaceholders) {
 
 TEST(Pattern, WithAWrongBraceOrFormatIsNone) {
   for (const char* wrong : {"{", "}", "{}", "{a:}", "{a:x}", "{a:.}", "{a:.0}", "a}b", "{a:d",
-                            "{a:d} {a}", "{a}{b}{c}{d}{e}"})
+                            "{a:d} {a}", "{a}{b}{c}{d}{e}{f}{g}{h}{i}"})
     EXPECT_FALSE(argumentsOf(wrong)) << wrong;
   EXPECT_EQ(argumentsOf("{a} {b:.2} {a}")->count, 2u);
 }
