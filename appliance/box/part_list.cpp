@@ -6,6 +6,15 @@
 #include <utility>
 
 namespace appliance {
+namespace {
+
+/// A part whose thread still uses it stays until the process ends.
+void abandon(std::unique_ptr<Part> part) {
+  static auto* const abandoned = new std::vector<std::unique_ptr<Part>>;  // never destroyed
+  abandoned->push_back(std::move(part));
+}
+
+}  // namespace
 
 PartList::~PartList() {
   (void)stop();
@@ -30,7 +39,7 @@ std::vector<std::string> PartList::stop() {
     if (stopInTime(*part)) continue;
     hung.push_back(withId(
         phrase<Word::kPartHangs>(part->name(), std::chrono::duration<double>(patience_).count())));
-    (void)part.release();  // its thread still uses it
+    abandon(std::move(part));
   }
   std::erase(parts_, nullptr);
   hung_ = !hung.empty();

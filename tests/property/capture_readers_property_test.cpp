@@ -171,7 +171,8 @@ TEST(FrameReaders, AreRefusedBeyondTheReserveOfTheHistory) {
   Box box(1, 4, 2, {3});
   const auto more = box.history->openReader("clips", 1);
   ASSERT_FALSE(more);
-  EXPECT_THAT(more.error(), testing::HasSubstr("reader clips asks for 1 pins per camera, 0 are left"));
+  EXPECT_THAT(more.error(),
+              testing::HasSubstr("reader clips asks for 1 pins per camera, 0 are left"));
 }
 
 TEST(CameraFrames, DropsTheNewFrameAndKeepsTheOldOnesWhenReadersHoldEverySlot) {

@@ -45,8 +45,8 @@ appliance::JobOrder orderOf(Hand& hand, const std::string& owner = "",
 }
 
 TEST(JobRegistry, ReportsAJobFromItsBeginToItsEnd) {
-  JobRegistry jobs;
   Hand hand;
+  JobRegistry jobs;
   const auto id = jobs.start(orderOf(hand));
   ASSERT_TRUE(id.has_value()) << textOf(id.error());
   EXPECT_THAT(jobs.look().begun, ElementsAre(*id));
@@ -62,8 +62,8 @@ TEST(JobRegistry, ReportsAJobFromItsBeginToItsEnd) {
 }
 
 TEST(JobRegistry, CancelsARunningJobAndLeavesAnEndedOneAlone) {
-  JobRegistry jobs;
   Hand hand;
+  JobRegistry jobs;
   const auto id = jobs.start(orderOf(hand)).value();
   EXPECT_TRUE(jobs.cancel(id));
   EXPECT_TRUE(hand.cancelled);
@@ -76,10 +76,10 @@ TEST(JobRegistry, CancelsARunningJobAndLeavesAnEndedOneAlone) {
 }
 
 TEST(JobRegistry, AnOwnerThatLeavesEndsOnlyWhatIsToEndWithIt) {
-  JobRegistry jobs;
   Hand stays;
   Hand ends;
   Hand other;
+  JobRegistry jobs;
   (void)jobs.start(orderOf(stays, ":1.5", WhenOwnerLeaves::kGoesOn));
   (void)jobs.start(orderOf(ends, ":1.5", WhenOwnerLeaves::kIsCancelled));
   (void)jobs.start(orderOf(other, ":1.6", WhenOwnerLeaves::kIsCancelled));
@@ -90,10 +90,10 @@ TEST(JobRegistry, AnOwnerThatLeavesEndsOnlyWhatIsToEndWithIt) {
 }
 
 TEST(JobRegistry, RefusesMoreThanItCanRun) {
-  JobRegistry jobs;
   std::array<Hand, JobRegistry::kMostRunning> hands;
-  for (Hand& hand : hands) EXPECT_TRUE(jobs.start(orderOf(hand)).has_value());
   Hand one_more;
+  JobRegistry jobs;
+  for (Hand& hand : hands) EXPECT_TRUE(jobs.start(orderOf(hand)).has_value());
   EXPECT_THAT(textOf(jobs.start(orderOf(one_more)).error()), HasSubstr("wait for one of them"));
   hands[0].report.state = JobState::kFailed;
   (void)jobs.look();
@@ -101,8 +101,8 @@ TEST(JobRegistry, RefusesMoreThanItCanRun) {
 }
 
 TEST(JobRegistry, KeepsTheLastOnesThatEndedAndForgetsTheOldest) {
-  JobRegistry jobs;
   Hand running;
+  JobRegistry jobs;
   const auto first = jobs.start(orderOf(running)).value();
   std::vector<appliance::JobId> forgotten;
   for (std::size_t i = 0; i < JobRegistry::kMostKept + 3; ++i) {

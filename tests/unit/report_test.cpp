@@ -343,7 +343,8 @@ TEST(Report, ExcusesNoLossFarFromAStall) {
 }
 
 TEST(Report, SaysWhyARunIsNotValid) {
-  EXPECT_THAT(reportOf(paperRun().files(), true).invalid_reasons, Contains(HasSubstr("incomplete")));
+  EXPECT_THAT(reportOf(paperRun().files(), true).invalid_reasons,
+              Contains(HasSubstr("incomplete")));
   RunWriter dropped = paperRun();
   dropped.summary(true, 3);
   EXPECT_THAT(reportOf(dropped.files(), true).invalid_reasons,
