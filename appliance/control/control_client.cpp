@@ -70,7 +70,7 @@ std::expected<std::string, std::string> ControlClient::callAt(const Object& obje
   for (const char type : {'s', 'o'}) {
     const std::array<char, 2> signature = {type, '\0'};
     if (sd_bus_message_has_signature(exchange.reply, signature.data()) != 0 &&
-        sd_bus_message_read_basic(exchange.reply, type, &text) < 0)
+        sd_bus_message_read_basic(exchange.reply, type, static_cast<void*>(&text)) < 0)
       return std::unexpected("kagamid's answer cannot be read");
   }
   return std::string(text);

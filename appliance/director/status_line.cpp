@@ -58,7 +58,7 @@ Phrase comparisonOf(const Shot& shot) {
 
 /// Why the picture is not the requested one, and what is shown instead.
 std::string badgeOf(const Shot& shot) {
-  const std::string reason = textOf(reasonOf(shot));
+  std::string reason = textOf(reasonOf(shot));
   if (shot.camera_shown != shot.camera_wanted) {
     const std::uint64_t camera = std::uint64_t{shot.camera_shown} + 1;
     return reason + ": " + textOf(phrase<Word::kBadgeShowing>(camera));

@@ -110,7 +110,7 @@ class Flood {
   }
   /// The rest of the line.
   [[nodiscard]] std::string textAfter(const std::string& words) const {
-    const std::string output = program_.output();
+    std::string output = program_.output();
     const std::size_t at = output.find(words);
     if (at == std::string::npos) return output;
     const std::size_t begin = at + words.size();

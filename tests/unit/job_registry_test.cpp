@@ -14,7 +14,6 @@ using appliance::JobState;
 using appliance::WhenOwnerLeaves;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// A work that a test holds in its hands.
 struct Hand {
