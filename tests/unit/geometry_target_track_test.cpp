@@ -224,7 +224,7 @@ TEST(TargetTrack, NoReaderEverSeesHalfOfAPoint) {
   {
     std::vector<std::jthread> readers;
     for (int r = 0; r < kReaders; ++r) {
-      readers.emplace_back([&track, &done, &torn = torn[r], r] {
+      readers.emplace_back([&track, &done, &torn = torn[static_cast<std::size_t>(r)], r] {
         Reader reader(track);
         for (int i = 0; i < kLooks; ++i) {
           const auto back = rt::Nanoseconds((i * 37 + r) % 3000);
