@@ -432,7 +432,7 @@ run_studio() {  # FOLDER
   usual_patience=$emulator_patience
   usual_zoom=$zoom
   emulator_patience=3000
-  zoom=1.4  # 5:4 pictures: the hall fills the width of the screen
+  zoom='"cover"'  # as the box does by itself: the hall fills the screen
   run_scene studio "$1" "$fps" --scene studio --cameras "$cameras" --size "$size" \
     --rig-out "$1/run/rig.toml" --studio-truth "$1/truth"
   emulator_patience=$usual_patience
