@@ -21,12 +21,10 @@ struct ServerBusCloser {
 using ServerBus = std::unique_ptr<sd_bus, ServerBusCloser>;
 
 inline constexpr const char* kControlPath = "/org/kagami/Kagami1";
-inline constexpr const char* kDepthPath = "/org/kagami/Kagami1/depth";
 inline constexpr const char* kStatusInterface = "org.kagami.Kagami1";
 inline constexpr const char* kControlInterface = "org.kagami.Kagami1.Control";
 inline constexpr const char* kMaintenanceInterface = "org.kagami.Kagami1.Maintenance";
 inline constexpr const char* kJobInterface = "org.kagami.Kagami1.Job";
-inline constexpr const char* kDepthInterface = "org.kagami.Kagami1.Depth";
 
 /// @p which: "system", "session" or a D-Bus address.
 /// Errors   One line: which bus, why not.

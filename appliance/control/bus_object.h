@@ -17,9 +17,16 @@ struct BusObject {
   void* target;  ///< what the callbacks get
 };
 
-/// Where a job is shown: what a method that starts one answers.
+/// The object of the part `depth`, for the part and for its clients.
+inline constexpr const char* kDepthPath = "/org/kagami/Kagami1/depth";
+inline constexpr const char* kDepthInterface = "org.kagami.Kagami1.Depth";
+
+/// Every job is an object below this path.
+inline constexpr const char* kJobsPath = "/org/kagami/Kagami1/jobs";
+
+/// The path of a job: the answer of a method that starts one.
 [[nodiscard]] inline std::string jobPath(std::uint32_t id) {
-  return "/org/kagami/Kagami1/jobs/" + std::to_string(id);
+  return std::string(kJobsPath) + "/" + std::to_string(id);
 }
 
 }  // namespace appliance

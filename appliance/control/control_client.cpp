@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "appliance/control/bus_object.h"
+
 namespace appliance {
 namespace {
 

@@ -16,8 +16,6 @@
 namespace appliance {
 namespace {
 
-constexpr const char* kJobsPath = "/org/kagami/Kagami1/jobs";
-
 JobId idOf(std::string_view path) {
   const std::string_view number = path.substr(path.rfind('/') + 1);
   JobId id = 0;

@@ -32,13 +32,15 @@ class RisingNumbers {
   std::uint64_t last_ = 0;
 };
 
+/// The pins of a snapshot's reader.
+inline constexpr std::uint32_t kSnapshotPins = DepthBoard::kKept;
+
 /// Writes the newest pairs that the board keeps, and as many more as come, as a folder that plays
 /// as a sensor. A snapshot that does not get whole leaves no folder.
 ///
 /// Threads  One: a job's. @p reader has a budget of kSnapshotPins.
 /// Errors   One line: no pair came, the pictures' size changed, the folder cannot be written. Asked
 ///          to stop it returns a line that says how far it got.
-inline constexpr std::uint32_t kSnapshotPins = DepthBoard::kKept;
 [[nodiscard]] std::expected<std::string, std::string> writeDepthSnapshot(
     DepthReader& reader, const DepthSnapshotOrder& order,
     const std::function<void(double)>& progress, const std::stop_token& stop);

@@ -51,10 +51,8 @@ std::expected<JobId, Phrase> DepthSnapshotJobs::start(std::uint32_t pairs, std::
 }
 
 BusObject DepthSnapshotJobs::busObject() {
-  return {.path = "/org/kagami/Kagami1/depth",
-          .interface = "org.kagami.Kagami1.Depth",
-          .vtable = kTable.data(),
-          .target = this};
+  return {
+      .path = kDepthPath, .interface = kDepthInterface, .vtable = kTable.data(), .target = this};
 }
 
 }  // namespace appliance
